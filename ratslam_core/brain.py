@@ -1,6 +1,6 @@
 """What a brain consists of: the parts of the papers or, beside them, ours, as the parameters choose.
 
-What the robot learns beside the map: goal memory and occupancy pictures. IROS 2005 section III, ACRA 2004 section 6.1.
+Beside the map it learns a goal memory (IROS 2005 section III) and pictures of occupancy (ACRA 2004 section 6.1).
 """
 
 from __future__ import annotations
@@ -23,70 +23,11 @@ from ratslam_core.local_view.recogniser import LocalView
 from ratslam_core.local_view.view_links import ViewLinks
 from ratslam_core.localisation import Localisation, VisualAssociation
 from ratslam_core.occupancy_grid import MapGrid, OccupancyGrid
-from ratslam_core.params import GoalMemoryParams, OccupancyParams, RatSlamParams
+from ratslam_core.params import OccupancyParams, RatSlamParams
 from ratslam_core.parts import ExperienceMapPart, KidnapDetectorPart, LocalViewPart, Optimiser, PoseCellsPart
 from ratslam_core.pose_cells.network import PoseCells
 from ratslam_core.pose_graph.relaxation import Relaxation
 from ratslam_core.types import Packet
-
-
-@kind("memories/2")
-class Memories:
-    """Gives the memories what each of them learns from."""
-
-    def __init__(
-        self,
-        goal_memory: GoalMemory,
-        occupancy: OccupancyGrid | None,
-        map_grid: MapGrid | None,
-        params: OccupancyParams,
-    ) -> None:
-        """params: whether the pictures are drawn."""
-        self.goal_memory, self.occupancy, self.map_grid, self.params = goal_memory, occupancy, map_grid, params
-        self._under_way_s = 0.0
-
-    def require_sonars(self, ranges_m: NDArray[np.floating] | None) -> NDArray[np.float64] | None:
-        """The ranges as they are needed, or a ValueError that says what is wrong with them."""
-        if ranges_m is None:
-            return None
-        if self.occupancy is None:
-            raise ValueError("ranges_m needs a RatSlam that was made with sonar_angles_rad")
-        return self.occupancy.require(ranges_m)
-
-    def set_params(self, goal_memory: GoalMemoryParams, occupancy: OccupancyParams) -> None:
-        self.goal_memory.params, self.params = goal_memory, occupancy
-
-    def learn(
-        self,
-        tick: Tick,
-        scan: NDArray[np.float64] | None,
-        pose_cells: PoseCellsPart,
-        map_: ExperienceMap,
-        packet: Packet,
-        leapt: bool,
-    ) -> None:
-        """Goal memory learns while the robot drives, the occupancy pictures always.
-
-        leapt: the way here was not driven.
-        """
-        self._learn_way(tick, pose_cells, leapt)
-        if scan is None or self.occupancy is None or self.map_grid is None or not self.params.enabled:
-            return
-        for _ in range(tick.beats):
-            self.occupancy.update(packet, scan)
-        self.map_grid.add(map_.here, map_.pose_filter.local, scan)
-
-    def _learn_way(self, tick: Tick, pose_cells: PoseCellsPart, leapt: bool) -> None:
-        """[ours] The robot did not drive where the packet jumped, so nothing is linked across the jump.
-
-        test_slam.py::test_a_leap_of_the_packet_is_no_way.
-        """
-        p = self.goal_memory.params
-        if leapt and not p.over_jumps:
-            self.goal_memory.interrupt()
-        if p.enabled and not tick.moved.still:
-            self._under_way_s += tick.moved.dt * tick.beats
-            self.goal_memory.learn(*pose_cells.active, self._under_way_s)
 
 
 class Brain:
@@ -133,12 +74,12 @@ class Brain:
 
     def _map(self, optimiser: Optimiser | None) -> ExperienceMap:
         p = self.params.experience_map
-        kind = ExperienceMap if p.enabled else CellsOnly
+        map_kind = ExperienceMap if p.enabled else CellsOnly
         ground = FamiliarGround if p.familiar_ground and p.enabled else NewGround
         if optimiser is None:
             optimiser = ExactSolver() if p.exact_solver else Relaxation()
         shape, cell_m = self.pose_cells.shape, self.params.pose_cells.cell_m
-        return kind(shape, cell_m, p, optimiser, ground(), self.params.evidence)
+        return map_kind(shape, cell_m, p, optimiser, ground(), self.params.evidence)
 
     @property
     def view_links(self) -> ViewLinks:
@@ -189,5 +130,61 @@ class Brain:
         self.association.set_params(params.local_view)
         self.experience_map.set_params(params.experience_map, params.evidence)
         self.kidnap_detector.params = params.kidnap
-        self.memories.set_params(params.goal_memory, params.occupancy)
+        self.goal_memory.params, self.memories.params = params.goal_memory, params.occupancy
         self.params = params
+
+
+@kind("memories/2")
+class Memories:
+    """Gives the memories what each of them learns from."""
+
+    def __init__(
+        self,
+        goal_memory: GoalMemory,
+        occupancy: OccupancyGrid | None,
+        map_grid: MapGrid | None,
+        params: OccupancyParams,
+    ) -> None:
+        """params: whether the pictures are drawn."""
+        self.goal_memory, self.occupancy, self.map_grid, self.params = goal_memory, occupancy, map_grid, params
+        self._under_way_s = 0.0
+
+    def require_sonars(self, ranges_m: NDArray[np.floating] | None) -> NDArray[np.float64] | None:
+        """The ranges as they are needed, or a ValueError that says what is wrong with them."""
+        if ranges_m is None:
+            return None
+        if self.occupancy is None:
+            raise ValueError("ranges_m needs a RatSlam that was made with sonar_angles_rad")
+        return self.occupancy.require(ranges_m)
+
+    def learn(
+        self,
+        tick: Tick,
+        scan: NDArray[np.float64] | None,
+        pose_cells: PoseCellsPart,
+        map_: ExperienceMap,
+        packet: Packet,
+        leapt: bool,
+    ) -> None:
+        """Goal memory learns while the robot drives, the occupancy pictures always.
+
+        leapt: the way here was not driven.
+        """
+        self._learn_way(tick, pose_cells, leapt)
+        if scan is None or self.occupancy is None or self.map_grid is None or not self.params.enabled:
+            return
+        for _ in range(tick.beats):
+            self.occupancy.update(packet, scan)
+        self.map_grid.add(map_.here, map_.pose_filter.local, scan)
+
+    def _learn_way(self, tick: Tick, pose_cells: PoseCellsPart, leapt: bool) -> None:
+        """[ours] The robot did not drive where the packet jumped, so nothing is linked across the jump.
+
+        test_slam.py::test_a_leap_of_the_packet_is_no_way.
+        """
+        p = self.goal_memory.params
+        if leapt and not p.over_jumps:
+            self.goal_memory.interrupt()
+        if p.enabled and not tick.moved.still:
+            self._under_way_s += tick.moved.dt * tick.beats
+            self.goal_memory.learn(*pose_cells.active, self._under_way_s)

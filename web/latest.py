@@ -1,6 +1,5 @@
-"""Hands the newest snapshot from the engine's thread to all readers: one slot, the newest wins.
-
-How often something may be shown. The newest wins, and what is not due yet waits without being forgotten.
+"""Hands the newest snapshot from the engine's thread to all readers, one slot in which the newest wins, and says how often
+something may be shown: what is not due yet waits without being forgotten.
 """
 
 from __future__ import annotations

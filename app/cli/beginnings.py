@@ -1,8 +1,6 @@
 """What `ratslam run` begins with: a run of its own, one that was kept, a situation, a recording, a trial.
 
-What `ratslam run` finds from earlier programs and offers to go on with: a brain that was kept, a run that was cut off.
-
-A situation that is named on the command line: by the path of its file, or by its link.
+What earlier programs left, a brain that was kept or a run that was cut off, is offered to be gone on with.
 """
 
 from __future__ import annotations
@@ -30,74 +28,6 @@ if TYPE_CHECKING:
     from app.trials.trial import Trial
     from web import messages as m
 
-
-def going_on(kept: KeptRun, tell: Callable[[float], object]) -> m.GoOn:
-    """The run in the session where it was left. tell: is told the share that is done, and may raise to give it up."""
-    from app.runs.replay import resumed
-    from web import messages as m
-
-    done_s = 0.0
-
-    def told(seconds: float) -> None:
-        nonlocal done_s
-        done_s += seconds
-        tell(min(1.0, done_s / max(kept.length_s, 1e-9)))
-
-    return m.GoOn(kept, resumed(kept, told))
-
-
-def cut_off_run() -> KeptRun | None:
-    """The newest run, if it was cut off in the middle, by a crash or a kill."""
-    from app.runs.folder import all_runs, is_open
-    from app.runs.run_file import open_run
-
-    for folder in all_runs()[:1]:
-        try:
-            run = open_run(folder)
-        except ValueError:
-            return None
-        if run.last_tick > 0 and not run.end and not is_open(folder):
-            print(f"The run {run.name} was cut off: go on with it by `ratslam run --resume {run.name}`", flush=True)
-            return run
-    return None
-
-
-def kept_brain(args: argparse.Namespace) -> KeptBrain | None:
-    """The brain kept last: with --resume-brain set up to be run, without it returned, to be offered on the page."""
-    from app.kept_brains import folder, newest
-
-    kept = newest()
-    if not args.resume_brain:
-        if kept is None or args.brain is not None:
-            return None
-        print(f"There is {kept.words}: go on with it by `ratslam run --resume-brain`", flush=True)
-        return kept
-    if args.brain is not None:
-        raise ValueError(f"--resume-brain takes the brain that was kept last; do not give --brain {args.brain} with it")
-    if kept is None:
-        raise ValueError(f"--resume-brain: no brain is kept in {folder()}")
-    args.brain, args.world, args.seed = kept.path, kept.about.world, kept.about.seed
-    return None
-
-
-def situation_in(name: str) -> Situation:
-    """ValueError says why it cannot be opened."""
-    if f"{KEY}=" in name:
-        return read_situation(name)
-    try:
-        with Path(name).open("rb") as file:
-            text = file.read(SITUATION_BYTES + 1).decode()
-    except (OSError, UnicodeDecodeError) as error:
-        reason = getattr(error, "strerror", None) or "it is no text"
-        raise ValueError(
-            f"--situation {name[:80]}: {reason}; give the file of a situation, or a link with #{KEY}= in quotes"
-        ) from None
-    try:
-        return read_situation(text)
-    except ValueError as error:
-        raise ValueError(f"--situation {name[:80]}: {error}") from None
-
-
 _NOT_WITH_RECORDING = ("scale", "brain", "resume_brain", "experiment", "engine", "levels")
 _NOT_WITH_EXPERIMENT = ("scale", "brain", "preset", "config", "set", "resume_brain")
 _NOT_WITH_A_RUN = ("seed", "recording", *_NOT_WITH_EXPERIMENT, "experiment", "engine", "levels")
@@ -124,19 +54,59 @@ def new_run(args: argparse.Namespace) -> First:
             raise ValueError(f"--{name} is for a trial; give --experiment NAME with it")
     args.seed = 1 if args.seed is None else args.seed
     own_worlds.tidy()
-    kept = kept_brain(args)
+    kept = _kept_brain(args)
     cut_off = None if args.resume_brain or args.brain is not None else cut_off_run()
     world, config, brain = session_of(args)
     return First(world, args.seed, config, brain, kept=kept, cut_off=cut_off)
 
 
-def _refuse(args: argparse.Namespace, names: tuple[str, ...], option: str) -> None:
-    """ValueError if one of these options, or a world, is given beside `option`, which ends with the reason."""
-    for name in names:
-        if (given := getattr(args, name)) is not None and given is not False and given != []:  # seed 0 is given
-            raise ValueError(f"--{name.replace('_', '-')} does not go with {option}")
-    if args.world != DEFAULT_WORLD:
-        raise ValueError(f"--world {args.world} does not go with {option}")
+def _kept_brain(args: argparse.Namespace) -> KeptBrain | None:
+    """The brain kept last: with --resume-brain set up to be run, without it returned, to be offered on the page."""
+    from app.kept_brains import folder, newest
+
+    kept = newest()
+    if not args.resume_brain:
+        if kept is None or args.brain is not None:
+            return None
+        print(f"There is {kept.words}: go on with it by `ratslam run --resume-brain`", flush=True)
+        return kept
+    if args.brain is not None:
+        raise ValueError(f"--resume-brain takes the brain that was kept last; do not give --brain {args.brain} with it")
+    if kept is None:
+        raise ValueError(f"--resume-brain: no brain is kept in {folder()}")
+    args.brain, args.world, args.seed = kept.path, kept.about.world, kept.about.seed
+    return None
+
+
+def cut_off_run() -> KeptRun | None:
+    """The newest run, if it was cut off in the middle, by a crash or a kill."""
+    from app.runs.folder import all_runs, is_open
+    from app.runs.run_file import open_run
+
+    for folder in all_runs()[:1]:
+        try:
+            run = open_run(folder)
+        except ValueError:
+            return None
+        if run.last_tick > 0 and not run.end and not is_open(folder):
+            print(f"The run {run.name} was cut off: go on with it by `ratslam run --resume {run.name}`", flush=True)
+            return run
+    return None
+
+
+def going_on(kept: KeptRun, tell: Callable[[float], object]) -> m.GoOn:
+    """The run in the session where it was left. tell: is given the share that is done, and may raise to give it up."""
+    from app.runs.replay import resumed
+    from web import messages as m
+
+    done_s = 0.0
+
+    def told(seconds: float) -> None:
+        nonlocal done_s
+        done_s += seconds
+        tell(min(1.0, done_s / max(kept.length_s, 1e-9)))
+
+    return m.GoOn(kept, resumed(kept, told))
 
 
 def resumed_run(args: argparse.Namespace) -> First:
@@ -162,13 +132,30 @@ def resumed_run(args: argparse.Namespace) -> First:
 
 def opened_situation(args: argparse.Namespace) -> First:
     """Play up to the moment of a situation; the page shows how far it is."""
-
     _refuse(args, _NOT_WITH_A_RUN, "--situation, which has its own")
-    situation = situation_in(args.situation)
+    situation = _situation_in(args.situation)
     header = situation.header
     own_worlds.tidy()
     world = world_from_json(header.world, f"the world {header.world_name}", SMALLEST_M)
     return First(world, header.seed, header.config, begin=lambda engine: engine.open_situation(situation))
+
+
+def _situation_in(name: str) -> Situation:
+    """The situation in a file, or of a link. ValueError says why it cannot be opened."""
+    if f"{KEY}=" in name:
+        return read_situation(name)
+    try:
+        with Path(name).open("rb") as file:
+            text = file.read(SITUATION_BYTES + 1).decode()
+    except (OSError, UnicodeDecodeError) as error:
+        reason = getattr(error, "strerror", None) or "it is no text"
+        raise ValueError(
+            f"--situation {name[:80]}: {reason}; give the file of a situation, or a link with #{KEY}= in quotes"
+        ) from None
+    try:
+        return read_situation(text)
+    except ValueError as error:
+        raise ValueError(f"--situation {name[:80]}: {error}") from None
 
 
 def played_recording(args: argparse.Namespace) -> First:
@@ -180,12 +167,8 @@ def played_recording(args: argparse.Namespace) -> First:
     seed = checked_seed(1 if args.seed is None else args.seed)
     player = Player(ReadApart(args.recording), seed, path=args.recording)
     player.config = config_of(args, player.config)
-
-    def begin(engine: Engine) -> None:
-        engine.begin_recording(player)
-
     own_worlds.tidy()
-    return First(open_world(DEFAULT_WORLD), seed, player.config, begin=begin)
+    return First(open_world(DEFAULT_WORLD), seed, player.config, begin=lambda engine: engine.begin_recording(player))
 
 
 def chosen_experiment(args: argparse.Namespace, running: bool) -> First:
@@ -214,3 +197,12 @@ def first_of_trial(trial: Trial, moment_s: float | None, title: str, running: bo
 
     own_worlds.tidy()
     return First(world, trial.seed, config, begin=begin)
+
+
+def _refuse(args: argparse.Namespace, names: tuple[str, ...], option: str) -> None:
+    """ValueError if one of these options, or a world, is given beside `option`, which ends with the reason."""
+    for name in names:
+        if (given := getattr(args, name)) is not None and given is not False and given != []:  # seed 0 is given
+            raise ValueError(f"--{name.replace('_', '-')} does not go with {option}")
+    if args.world != DEFAULT_WORLD:
+        raise ValueError(f"--world {args.world} does not go with {option}")

@@ -1,8 +1,6 @@
 """The command `ratslam`, one file for each of its verbs: run (the dashboard), headless, experiment, export, recording ...
 
-`ratslam bench`: the engine's speed.
-
-`ratslam config`: every parameter with its meaning.
+The two smallest verbs stand here: `ratslam bench`, the engine's speed, and `ratslam config`, every parameter with its meaning.
 """
 
 from __future__ import annotations
@@ -29,29 +27,29 @@ from app.startup.ending import ended
 from disk import require_writable, write_whole
 
 
-def add_bench(commands: Verbs) -> None:
-    bench = commands.add_parser("bench", help="measure the speed of the engine, each part beside a reference")
-    bench.add_argument("--json", type=Path, metavar="FILE", help="also write the rows to FILE as JSON")
-    bench.add_argument("--quick", action="store_true", help="small sizes, to see that all of it works")
-    bench.set_defaults(do=_bench)
+def main(argv: list[str] | None = None) -> int:
+    """Run one command and return its exit code; ending.py says what the codes mean."""
+    parser = parser_of_all()
+    arguments = list(sys.argv[1:] if argv is None else argv)
+    if not arguments or (arguments[0].startswith("-") and arguments[0] not in ("-h", "--help")):
+        arguments.insert(0, "run")
+    args = parser.parse_args(arguments)
+    return ended(lambda: args.do(args))
 
 
-def _bench(args: argparse.Namespace) -> int:
-    require_writable("--json", args.json)
-    from benchmarks import engine, machine, office
-
-    measured: list[dict[str, Any]] = []
-    for row in chain(engine.rows(args.quick), office.rows(args.quick)):
-        print(engine.line(row), flush=True)
-        measured.append(row)
-    if not all(row["holds"] for row in measured):
-        print(machine.busy_words())
-    if args.json is not None:
-        write_whole(args.json, json.dumps(measured, indent=2) + "\n")
-    return 0
+def parser_of_all() -> argparse.ArgumentParser:
+    """Understands every command, and carries out none."""
+    parser = argparse.ArgumentParser(prog="ratslam", description="RatSLAM, alive in a browser.")
+    commands = parser.add_subparsers(title="commands", required=True)
+    for add in (
+        *(add_run, add_runs, add_replay, add_headless, add_deliver, add_trial, add_experiment, add_lessons),
+        *(add_export, add_recording, add_worlds, _add_config, _add_bench),
+    ):
+        add(commands)
+    return parser
 
 
-def add_config(commands: Verbs) -> None:
+def _add_config(commands: Verbs) -> None:
     config = commands.add_parser("config", help="print every parameter as TOML with symbol, unit and source")
     pages = config.add_mutually_exclusive_group()
     pages.add_argument("--table", action="store_true", help="print them as Markdown tables instead")
@@ -71,23 +69,23 @@ def _config(args: argparse.Namespace) -> int:
     return 0
 
 
-def main(argv: list[str] | None = None) -> int:
-    """Run one command and return its exit code; ending.py says what the codes mean."""
-    parser = parser_of_all()
-    arguments = list(sys.argv[1:] if argv is None else argv)
-    if not arguments or (arguments[0].startswith("-") and arguments[0] not in ("-h", "--help")):
-        arguments.insert(0, "run")
-    args = parser.parse_args(arguments)
-    return ended(lambda: args.do(args))
+def _add_bench(commands: Verbs) -> None:
+    bench = commands.add_parser("bench", help="measure the speed of the engine, each part beside a reference")
+    bench.add_argument("--json", type=Path, metavar="FILE", help="also write the rows to FILE as JSON")
+    bench.add_argument("--quick", action="store_true", help="small sizes, to see that all of it works")
+    bench.set_defaults(do=_bench)
 
 
-def parser_of_all() -> argparse.ArgumentParser:
-    """Understands every command, and carries out none."""
-    parser = argparse.ArgumentParser(prog="ratslam", description="RatSLAM, alive in a browser.")
-    commands = parser.add_subparsers(title="commands", required=True)
-    for add in (
-        *(add_run, add_runs, add_replay, add_headless, add_deliver, add_trial, add_experiment, add_lessons),
-        *(add_export, add_recording, add_worlds, add_config, add_bench),
-    ):
-        add(commands)
-    return parser
+def _bench(args: argparse.Namespace) -> int:
+    require_writable("--json", args.json)
+    from benchmarks import engine, machine, office
+
+    measured: list[dict[str, Any]] = []
+    for row in chain(engine.rows(args.quick), office.rows(args.quick)):
+        print(engine.line(row), flush=True)
+        measured.append(row)
+    if not all(row["holds"] for row in measured):
+        print(machine.busy_words())
+    if args.json is not None:
+        write_whole(args.json, json.dumps(measured, indent=2) + "\n")
+    return 0

@@ -1,7 +1,4 @@
-"""The options that several commands share, and how they become a world, a config and a brain.
-
-Where the report of a run goes.
-"""
+"""The options that several commands share, how they become a world, a config and a brain, and where a run's report goes."""
 
 from __future__ import annotations
 
@@ -21,9 +18,7 @@ if TYPE_CHECKING:
     from ratslam_core import RatSlam
     from sim2d import World
 
-
 Verbs: TypeAlias = "argparse._SubParsersAction[argparse.ArgumentParser]"  # pyright: ignore[reportPrivateUsage]
-
 ENGINES = ("ours", "paper", "paper-2005", "paper-2006")  # as `EngineName`, which loads more
 
 
@@ -46,6 +41,27 @@ def add_config_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--set", nargs="*", default=[], metavar="NAME=VALUE", help="change single parameters")
 
 
+def port_number(text: str) -> int:
+    """For argparse: a port, 0 for any free one."""
+    port = int(text) if text.isdigit() else -1
+    if not 0 <= port <= 65535:
+        raise argparse.ArgumentTypeError(f"a port is a whole number from 0 to 65535, got {text!r}")
+    return port
+
+
+def session_of(args: argparse.Namespace) -> tuple[World, Config, RatSlam | None]:
+    from ratslam_core import load_brain
+    from sim2d.importers import open_world
+
+    checked_seed(args.seed)
+    brain = None if args.brain is None else load_brain(args.brain)
+    config = config_of(args, Config() if brain is None else Config().with_engine(brain.params))
+    for words in config.warnings:
+        print(f"ratslam: note: {words}", file=sys.stderr)
+    world = open_world(args.world, args.scale, robot_radius_m=config.robot.robot_radius_m, tell=tell_beside)
+    return world, config, brain
+
+
 def config_of(args: argparse.Namespace, config: Config) -> Config:
     from app.config import from_toml, parse_value
 
@@ -65,14 +81,6 @@ def config_of(args: argparse.Namespace, config: Config) -> Config:
     return config.with_values(values)
 
 
-def port_number(text: str) -> int:
-    """For argparse: a port, 0 for any free one."""
-    port = int(text) if text.isdigit() else -1
-    if not 0 <= port <= 65535:
-        raise argparse.ArgumentTypeError(f"a port is a whole number from 0 to 65535, got {text!r}")
-    return port
-
-
 def checked_seed(seed: int) -> int:
     """The seed. ValueError says which are possible."""
     if not 0 <= seed < 2**32:
@@ -83,19 +91,6 @@ def checked_seed(seed: int) -> int:
 def tell_beside(sentence: str) -> None:
     """A word about a plan, beside what is printed."""
     print(f"ratslam: {sentence}", file=sys.stderr)
-
-
-def session_of(args: argparse.Namespace) -> tuple[World, Config, RatSlam | None]:
-    from ratslam_core import load_brain
-    from sim2d.importers import open_world
-
-    checked_seed(args.seed)
-    brain = None if args.brain is None else load_brain(args.brain)
-    config = config_of(args, Config() if brain is None else Config().with_engine(brain.params))
-    for words in config.warnings:
-        print(f"ratslam: note: {words}", file=sys.stderr)
-    world = open_world(args.world, args.scale, robot_radius_m=config.robot.robot_radius_m, tell=tell_beside)
-    return world, config, brain
 
 
 def write_report(report: dict[str, Any], file: Path | None, words: str) -> None:

@@ -1,7 +1,4 @@
-"""`ratslam run`: the dashboard.
-
-`ratslam run --class`: whether and where a class in the local network is let in.
-"""
+"""`ratslam run`: the dashboard. With `--class`, a class in the local network is let in."""
 
 from __future__ import annotations
 
@@ -19,32 +16,7 @@ if TYPE_CHECKING:
     from app.trials.trial import Trial
     from web.http.server import ForClass
 
-
-PORT = 8001
-
-
-def add_class_options(run: argparse.ArgumentParser) -> None:
-    run.add_argument(
-        "--class", dest="for_class", action="store_true", help="a class in the local network votes and looks on"
-    )
-    run.add_argument("--class-address", metavar="ADDRESS", help="with --class: at this address of the machine")
-    run.add_argument(
-        "--class-port", type=int, metavar="PORT", help=f"with --class: port (default {PORT}, 0 = any free one)"
-    )
-
-
-def for_class(args: argparse.Namespace) -> ForClass | None:
-    """Where a class is let in. ValueError: an option says where, but not that."""
-    if args.for_class:
-        from web.http.server import ForClass
-
-        return ForClass(args.class_address, PORT if args.class_port is None else args.class_port)
-    for name in ("class-address", "class-port"):
-        if getattr(args, name.replace("-", "_")) is not None:
-            raise ValueError(f"--{name} goes with --class, which lets a class in")
-    return None
-
-
+CLASS_PORT = 8001
 LEAST_PAST_MB = 20.0  # the copy of the last moment alone takes some
 
 
@@ -54,7 +26,7 @@ def add_run(commands: Verbs) -> None:
     run.add_argument(
         "--port", type=port_number, default=8000, help="port on 127.0.0.1; 0 = any free one (default 8000)"
     )
-    add_class_options(run)
+    _add_class_options(run)
     run.add_argument("--no-browser", action="store_true", help="only print the address")
     run.add_argument("--paused", action="store_true", help="start paused")
     run.add_argument(
@@ -91,6 +63,16 @@ def add_run(commands: Verbs) -> None:
     run.set_defaults(do=_run, seed=None)
 
 
+def _add_class_options(run: argparse.ArgumentParser) -> None:
+    run.add_argument(
+        "--class", dest="for_class", action="store_true", help="a class in the local network votes and looks on"
+    )
+    run.add_argument("--class-address", metavar="ADDRESS", help="with --class: at this address of the machine")
+    run.add_argument(
+        "--class-port", type=int, metavar="PORT", help=f"with --class: port (default {CLASS_PORT}, 0 = any free one)"
+    )
+
+
 def _run(args: argparse.Namespace) -> int:
     from web.messages.commands import SPEEDS, is_speed
 
@@ -104,9 +86,21 @@ def _run(args: argparse.Namespace) -> int:
         raise ValueError(f"--keep-past-disk must be megabytes from 0 on, got {args.keep_past_disk:g}")
     serving = Serving(
         args.port, not args.no_browser, args.speed, not args.paused, args.keep_runs, args.keep_past,
-        args.keep_past_disk, for_class(args),
+        args.keep_past_disk, _for_class(args),
     )  # fmt: skip
     return serve(serving, _first(args, serving))
+
+
+def _for_class(args: argparse.Namespace) -> ForClass | None:
+    """Where a class is let in. ValueError: an option says where, but not that."""
+    if args.for_class:
+        from web.http.server import ForClass
+
+        return ForClass(args.class_address, CLASS_PORT if args.class_port is None else args.class_port)
+    for name in ("class-address", "class-port"):
+        if getattr(args, name.replace("-", "_")) is not None:
+            raise ValueError(f"--{name} goes with --class, which lets a class in")
+    return None
 
 
 def _first(args: argparse.Namespace, serving: Serving) -> First:

@@ -1,6 +1,6 @@
-"""`ratslam trial`: one trial of ACRA 2006: 20 minutes of exploring, then three goals in the corners, in order.
+"""`ratslam trial`: one trial of ACRA 2006 by its own two numbers, size and ambiguity, outside of the table's levels.
 
-One trial of ACRA 2006 by its own two numbers, size and ambiguity, outside of the table's levels.
+20 minutes of exploring, then three goals in the corners, in order.
 """
 
 from __future__ import annotations
@@ -8,68 +8,21 @@ from __future__ import annotations
 import argparse
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from app.cli.options import ENGINES, Verbs, write_report
 from app.cli.progress import compile_first, with_progress
-from app.trials.course import Course
-from app.trials.experiment import EngineName, find_experiment
-from app.trials.steps import Values
-from app.trials.trial import Result, Trial
 from disk import require_writable
 
-PER_CENT = 0.01
+if TYPE_CHECKING:
+    from app.trials.course import Course
+    from app.trials.experiment import EngineName
+    from app.trials.steps import Values
+    from app.trials.trial import Result, Trial
+
+_SIZES = (8, 512)
+_PER_CENT = 0.01
 _CAMERA: dict[str, str] = {"paper": "template", "ours": "image and sonars"}
-
-
-@dataclass(frozen=True, slots=True)
-class SizeAndAmbiguity:
-    """vision: "camera" or "scene", numbers of scenes from the true pose, as in the paper."""
-
-    pose_cells: int  # along each side
-    ambiguity: float  # N_vis, per cent
-    vision: Literal["camera", "scene"]
-    engine: EngineName
-    seed: int
-
-    @property
-    def trial(self) -> Trial:
-        """The table's trial with these numbers."""
-        first = find_experiment("table").make_trials([self.engine], 1)[0]
-        size = self.pose_cells
-        values: Values = {
-            **first.values,
-            "local_view.front_end": "scene numbers" if self.vision == "scene" else _CAMERA[self.engine],
-            "robot.camera": self.vision == "camera",
-            "pose_cells.n_x": size,
-            "pose_cells.n_y": size,
-            "local_view.false_positives": self.ambiguity * PER_CENT,
-        }
-        return replace(first, levels=(f"{self.ambiguity:g} %", f"{size} x {size}"), seed=self.seed, values=values)
-
-    def report(self, result: Result, course: Course) -> dict[str, Any]:
-        """The report. docs/reports.md tells what each key means."""
-        goals = [
-            {
-                "name": visit.name,
-                "reached": visit.reached,
-                "time_s": round(visit.time_s, 3),
-                "miss_m": round(visit.miss_m, 3),
-                "why": visit.why,
-            }
-            for visit in course.visits
-        ]
-        return {
-            **asdict(self),
-            "goals": goals,
-            "error_m": round(result.scores["error_m"], 3),
-            "wall_s": round(result.wall_s, 3),
-            "simulated_s": round(result.simulated_s, 3),
-            "state_hash": result.state_hash,
-        }
-
-
-SIZES = (8, 512)
 
 
 def add_trial(commands: Verbs) -> None:
@@ -92,7 +45,7 @@ def add_trial(commands: Verbs) -> None:
 
 
 def _trial(args: argparse.Namespace) -> int:
-    low, high = SIZES
+    low, high = _SIZES
     if not low <= args.pose_cells <= high:
         raise ValueError(f"--pose-cells must be from {low} to {high}, got {args.pose_cells}")
     if not 0 <= args.ambiguity <= 100:
@@ -108,6 +61,52 @@ def _trial(args: argparse.Namespace) -> int:
     report = asked.report(result, course)
     write_report(report, args.report, _words(report))
     return 0
+
+
+@dataclass(frozen=True, slots=True)
+class SizeAndAmbiguity:
+    """vision: "camera" or "scene", numbers of scenes from the true pose, as in the paper."""
+
+    pose_cells: int  # along each side
+    ambiguity: float  # N_vis, per cent
+    vision: Literal["camera", "scene"]
+    engine: EngineName
+    seed: int
+
+    @property
+    def trial(self) -> Trial:
+        """The table's trial with these numbers."""
+        from app.trials.experiment import find_experiment
+
+        first = find_experiment("table").make_trials([self.engine], 1)[0]
+        size = self.pose_cells
+        values: Values = {
+            **first.values,
+            "local_view.front_end": "scene numbers" if self.vision == "scene" else _CAMERA[self.engine],
+            "robot.camera": self.vision == "camera",
+            "pose_cells.n_x": size,
+            "pose_cells.n_y": size,
+            "local_view.false_positives": self.ambiguity * _PER_CENT,
+        }
+        return replace(first, levels=(f"{self.ambiguity:g} %", f"{size} x {size}"), seed=self.seed, values=values)
+
+    def report(self, result: Result, course: Course) -> dict[str, Any]:
+        """The report. docs/reports.md tells what each key means."""
+        goals = [
+            {
+                "name": visit.name, "reached": visit.reached, "time_s": round(visit.time_s, 3),
+                "miss_m": round(visit.miss_m, 3), "why": visit.why,
+            }
+            for visit in course.visits
+        ]  # fmt: skip
+        return {
+            **asdict(self),
+            "goals": goals,
+            "error_m": round(result.scores["error_m"], 3),
+            "wall_s": round(result.wall_s, 3),
+            "simulated_s": round(result.simulated_s, 3),
+            "state_hash": result.state_hash,
+        }
 
 
 def _words(report: dict[str, Any]) -> str:

@@ -1,14 +1,5 @@
-"""The rigid alignment of an estimate with the truth, and the error that remains.
-
-How much of the floor a robot has covered: from which it could drive to its path within a metre.
-
-Which loops of the floor a map has closed.
-
-A look that joins two experiences closes a loop: from where the first was made the robot drove to where the second was
-made, and the look says that both are one place. How often that way winds round each island of the floor (a block of
-houses, the core of a corridor loop) is a row of whole numbers. As many loops are closed as these rows are independent.
-
-The links of a map compared with the truth: which of them join places that truly lie elsewhere.
+"""How well a map agrees with the truth: how far its path is off after alignment, which of its links are false, how many
+loops of the floor it has closed, and how much of the floor the robot has covered. Lengths in m, angles in rad.
 """
 
 from __future__ import annotations
@@ -49,55 +40,6 @@ def rmse(estimate: NDArray[np.float64], truth: NDArray[np.float64]) -> float:
     return float(np.sqrt(np.mean(squares)))
 
 
-NEAR_M = 1.0
-
-
-@kind("coverage/1")
-class Coverage:
-    """Follows a path as it grows. The work is that of what is new."""
-
-    CACHES = ("_floor",)
-
-    def __init__(self) -> None:
-        self._floor: FreeSpace | None = None
-        self._covered: NDArray[np.bool_] = np.zeros((0, 0), np.bool_)
-        self._count = self._followed = 0
-
-    def settle(self, floor: FreeSpace) -> None:
-        """Go on, on this floor, after having been restored. On a floor of another size, begin anew."""
-        self._floor = floor if self._covered.shape == tuple(floor.grid) else None
-
-    def follow(self, floor: FreeSpace, path: NDArray[np.float64]) -> float:
-        """The share of this floor that a path, (n, 2) m, covers. Another floor or a shorter path begins anew."""
-        if floor is not self._floor or len(path) < self._followed:
-            self._floor, self._covered = floor, np.zeros(floor.grid, np.bool_)
-            self._count = self._followed = 0
-        self._count += floor.cover(self._covered, path[self._followed :], NEAR_M)
-        self._followed = len(path)
-        return self._count / max(1, floor.floor_cells)
-
-
-def loops_closed(ends: NDArray[np.int64], births: Births, path: NDArray[np.float64], islands: NDArray[np.float64],
-                 tick_s: float) -> int:  # fmt: skip
-    """How many independent loops round `islands`, (k, 2) points in them, are closed by links between `ends`, (m, 2).
-
-    births: (n, 4) of the experiences; path: where the robot truly was in each tick, (ticks, 2), tick_s apart.
-    Links whose ends are not where one of the two was made must have been left out.
-    """
-    if len(ends) == 0 or len(islands) == 0:
-        return 0
-    made_s: NDArray[np.float64] = births[ends, 3]
-    ticks = np.minimum(np.round(made_s / tick_s).astype(np.int64), len(path) - 1)  # (m, 2)
-    turns = [_turns(path - island, ticks) for island in islands]
-    return int(np.linalg.matrix_rank(np.unique(np.stack(turns, axis=1), axis=0)))
-
-
-def _turns(path: NDArray[np.float64], ticks: NDArray[np.int64]) -> NDArray[np.float64]:
-    """How often the path winds round (0, 0) from the first to the second tick of each pair, and straight back; (m,)."""
-    angle: NDArray[np.float64] = np.unwrap(np.arctan2(path[:, 1], path[:, 0]))
-    return np.round((angle[ticks[:, 1]] - angle[ticks[:, 0]]) / (2 * np.pi))
-
-
 FALSE_M = 1.0  # a link is false if it is farther off than this
 BELIEVED = 0.5  # of its weight, from which on map correction counts as believing a link
 
@@ -118,7 +60,7 @@ class Judged:
 
 
 def looks(experiences: ExperienceMap, births: Births) -> Judged:
-    """The links that rest on a look. A false one welds two places together that are not one."""
+    """The links that rest on an observation. A false one makes one place of two."""
     return _judged(experiences, births, ~experiences.transitions.chain)
 
 
@@ -128,10 +70,8 @@ def backbone(experiences: ExperienceMap, births: Births) -> Judged:
 
 
 def _judged(experiences: ExperienceMap, births: Births, which: NDArray[np.bool_]) -> Judged:
-    """These rows, if both ends were made in this run, so that it is known where, and if they claim to be good to a metre.
-
-    How far off: the distance between where the link puts its second end, seen from where its first end was truly made,
-    and where the second was truly made.
+    """These rows, if both ends were made in this run, so that it is known where, and if they claim to be good to a
+    metre. How far off: from where the second end was truly made to where the link puts it, from where the first was.
     """
     t = experiences.transitions
     claims = t.weight[: t.count] >= (experiences.step_sigma_m / FALSE_M) ** 2  # a row's sigma is at most 1 m
@@ -143,3 +83,57 @@ def _judged(experiences: ExperienceMap, births: Births, which: NDArray[np.bool_]
     across = a[:, 0] + c * move[:, 0] - s * move[:, 1] - b[:, 0]
     up = a[:, 1] + s * move[:, 0] + c * move[:, 1] - b[:, 1]
     return Judged(ends, np.hypot(across, up), t.believed[rows] >= BELIEVED * t.weight[rows])
+
+
+def loops_closed(ends: NDArray[np.int64], births: Births, path: NDArray[np.float64], islands: NDArray[np.float64],
+                 tick_s: float) -> int:  # fmt: skip
+    """How many independent loops of the floor are closed by links between `ends`, (m, 2).
+
+    A link that rests on an observation closes a loop: from where its first end was made the robot drove to where the
+    second was made, and the observation says that both are one place. How often that way winds round each island of the
+    floor (a block of houses, the core of a corridor loop) is a row of whole numbers. As many loops are closed as these
+    rows are independent.
+
+    births: (n, 4) of the experiences; path: where the robot truly was in each tick, (ticks, 2), tick_s apart;
+    islands: a point in each, (k, 2). Links whose ends are not where one of the two was made must have been left out.
+    """
+    if len(ends) == 0 or len(islands) == 0:
+        return 0
+    made_s: NDArray[np.float64] = births[ends, 3]
+    ticks = np.minimum(np.round(made_s / tick_s).astype(np.int64), len(path) - 1)  # (m, 2)
+    turns = [_turns(path - island, ticks) for island in islands]
+    return int(np.linalg.matrix_rank(np.unique(np.stack(turns, axis=1), axis=0)))
+
+
+def _turns(path: NDArray[np.float64], ticks: NDArray[np.int64]) -> NDArray[np.float64]:
+    """How often the path winds round (0, 0) from the first to the second tick of each pair, and straight back; (m,)."""
+    angle: NDArray[np.float64] = np.unwrap(np.arctan2(path[:, 1], path[:, 0]))
+    return np.round((angle[ticks[:, 1]] - angle[ticks[:, 0]]) / (2 * np.pi))
+
+
+NEAR_M = 1.0  # floor from which the robot could drive to its path within this is covered
+
+
+@kind("coverage/1")
+class Coverage:
+    """How much of the floor a robot has covered. Follows its path as it grows: the work is that of what is new."""
+
+    CACHES = ("_floor",)
+
+    def __init__(self) -> None:
+        self._floor: FreeSpace | None = None
+        self._covered: NDArray[np.bool_] = np.zeros((0, 0), np.bool_)
+        self._count = self._followed = 0
+
+    def settle(self, floor: FreeSpace) -> None:
+        """Go on, on this floor, after having been restored. On a floor of another size, begin anew."""
+        self._floor = floor if self._covered.shape == tuple(floor.grid) else None
+
+    def follow(self, floor: FreeSpace, path: NDArray[np.float64]) -> float:
+        """The share of this floor that a path, (n, 2) m, covers. Another floor or a shorter path begins anew."""
+        if floor is not self._floor or len(path) < self._followed:
+            self._floor, self._covered = floor, np.zeros(floor.grid, np.bool_)
+            self._count = self._followed = 0
+        self._count += floor.cover(self._covered, path[self._followed :], NEAR_M)
+        self._followed = len(path)
+        return self._count / max(1, floor.floor_cells)

@@ -1,4 +1,4 @@
-"""The estimate compared with the truth: errors, consistency, kidnaps, goals. The robot never sees it.
+"""The estimate compared with the truth: errors, consistency, kidnaps. The robot never sees it.
 
 Consistency over time, as in ACRA 2004, 6.5: the estimate here against the estimates of earlier passes through here.
 """
@@ -16,63 +16,12 @@ from disk import kind
 from ratslam_core import CellsOnly, ExperienceMap, Odometry, Pose2
 from sim2d import Truth
 
-AWAY_M = 2.0  # an earlier pass ended when the robot was this far away
-HERE_M, HERE_RAD = 0.5, 0.6  # a pass that came this near, facing the same way, went through here
-EVERY = 5  # rows; at 10 Hz and 0.3 m/s, one in 0.15 m
-
-
-def off_earlier_passes(
-    true: NDArray[np.float64], estimated: NDArray[np.float64], here: Pose2, estimate: Pose2
-) -> tuple[float, float]:
-    """How far (m, rad) the estimate is from those of half of the earlier passes, at least. NaN where there was none.
-
-    true, estimated: the robot's poses so far, thinned, (n, 3) each, m and rad, of which each is the other's at the same time.
-    The estimates need not be Cartesian: only the short way from where an earlier pass was counts as straight. Half, since
-    among many passes one agrees by chance, and a place may have two representations.
-    """
-    apart = np.hypot(true[:, 0] - here.x, true[:, 1] - here.y)
-    away = np.flatnonzero(apart > AWAY_M)
-    passed = slice(0, away[-1] if len(away) else 0)
-    turned = np.abs(np.remainder(true[passed, 2] - here.heading_rad + np.pi, 2 * np.pi) - np.pi)
-    passes = np.flatnonzero((apart[passed] < HERE_M) & (turned < HERE_RAD))
-    if not len(passes):
-        return math.nan, math.nan
-    then = true[passes]
-    turn = estimated[passes, 2] - then[:, 2]
-    dx, dy = here.x - then[:, 0], here.y - then[:, 1]
-    x = estimated[passes, 0] + np.cos(turn) * dx - np.sin(turn) * dy
-    y = estimated[passes, 1] + np.sin(turn) * dx + np.cos(turn) * dy
-    off = np.hypot(x - estimate.x, y - estimate.y)
-    half = int(np.argsort(off, kind="stable")[(len(off) - 1) // 2])
-    facing = estimate.heading_rad - here.heading_rad - float(turn[half])
-    return float(off[half]), abs(math.remainder(facing, math.tau))
-
-
-def off_same_estimate(
-    true: NDArray[np.float64], estimated: NDArray[np.float64], here: Pose2, estimate: Pose2
-) -> tuple[float, float]:
-    """How far (m, rad) the robot is from the place that its estimate stands for: where it truly was when its estimate was
-    nearest to what it is now. NaN where it never was near.
-
-    true, estimated: as for `off_earlier_passes`.
-    """
-    apart = np.hypot(estimated[:, 0] - estimate.x, estimated[:, 1] - estimate.y)
-    turned = np.abs(np.remainder(estimated[:, 2] - estimate.heading_rad + np.pi, 2 * np.pi) - np.pi)
-    alike = np.flatnonzero((apart < HERE_M) & (turned < HERE_RAD))
-    if not len(alike):
-        return math.nan, math.nan
-    then = alike[np.argmin(apart[alike])]
-    moved = Pose2(*estimated[then].tolist()).inverse().compose(estimate)
-    stands_for = Pose2(*true[then].tolist()).compose(moved)
-    turn = abs(math.remainder(stands_for.heading_rad - here.heading_rad, math.tau))
-    return math.hypot(stands_for.x - here.x, stands_for.y - here.y), turn
-
-
 REVISIT_AGE_S = 20.0  # an active experience that was made longer ago than this counts as revisited
 NEAR_M, NEAR_RAD = 1.0, 0.6
 CONSISTENT_M = 0.5  # a revisit is consistent if the robot is truly this near to where it believes itself to be
-MOST_TICKS = 20_000  # before a kidnap, with whose estimates one after it is compared: the work is bounded
 CONSISTENT_WITHIN_S = 300.0  # of a kidnap; later nobody asks whether the estimate agrees with those of before
+MOST_TICKS = 20_000  # before a kidnap, with whose estimates one after it is compared: the work is bounded
+EVERY = 5  # rows; at 10 Hz and 0.3 m/s, one in 0.15 m
 LEAST_WAY_M = 0.5  # a path with a smaller spread (RMS distance from its middle) does not determine the map's rotation
 
 Points = NDArray[np.float64]  # (n, 2)
@@ -84,14 +33,12 @@ class Evaluation:
 
     def __init__(self, known: int = 0) -> None:
         """known: how many experiences the brain brought with it. Where those were truly made is unknown."""
-        self._rows: NDArray[np.float64] = np.zeros(
-            (4096, 8)
-        )  # true x, y, heading; local pose x, y, heading; odometry alone x, y
+        # True x, y, heading; local pose x, y, heading; odometry alone x, y.
+        self._rows: NDArray[np.float64] = np.zeros((4096, 8))
         self._experience = np.zeros(4096, np.int64)
         self._count = 0
-        self._made_at = np.full(
-            (max(1024, known), 4), np.nan
-        )  # true x, y, heading and the time at which each experience was made
+        # True x, y, heading and the time at which each experience was made.
+        self._made_at = np.full((max(1024, known), 4), np.nan)
         self._odometry = Pose2(0.0, 0.0, 0.0)
         self._revisits = self._consistent = 0
         self.path_m = 0.0
@@ -124,8 +71,8 @@ class Evaluation:
         self.kidnaps.append(Kidnapping(time_s, self.map_in_office(experiences), len(experiences.poses), self._count))
 
     def made_at(self, experience: int, experiences: ExperienceMap) -> tuple[float, float]:
-        """Where the robot truly was when it made this experience (m, office frame). For an experience that the brain
-        brought with it: its place in the map, after the map has been aligned with the robot's path."""
+        """Where the robot truly was when it made this experience (m, office frame). One that the brain brought with it
+        is where the map has it, after alignment with the robot's path."""
         x, y = (float(v) for v in self._made_at[experience, :2])
         if math.isfinite(x):
             return x, y
@@ -139,7 +86,7 @@ class Evaluation:
         return heading if math.isfinite(heading) else None
 
     def births(self, experiences: int) -> NDArray[np.float64]:
-        """True x, y (m), heading (rad) and time (s) of making the first so many experiences, (n, 4); NaN where unknown."""
+        """True x, y (m), heading (rad) and time (s) of making the first experiences, (n, 4); NaN where unknown."""
         known = self._made_at[:experiences]
         unknown = np.full((experiences - len(known), 4), np.nan)
         return np.concatenate([known, unknown])
@@ -153,8 +100,8 @@ class Evaluation:
         """How far (m, rad) the robot is from where it believes itself to be beside the active experience.
 
         The experience counts as being where it was truly made, so a map that is bent or moves later changes nothing.
-        NaN for an experience that the brain brought with it. Without a map (ACRA 2004) the robot is where the packet was
-        when it passed here before, NaN on new ground: what the cells hold need not be Cartesian.
+        NaN for an experience that the brain brought with it. Without a map (ACRA 2004) the packet is compared with
+        where it was when the robot passed here before, NaN on new ground: what the cells hold need not be Cartesian.
         """
         if isinstance(experiences, CellsOnly):
             passes = self._estimates(slice(0, self._count, EVERY), experiences)
@@ -188,8 +135,8 @@ class Evaluation:
         return true[:, :2], mapped[:, :2], self._rows[ticks, 6:8]
 
     def map_in_office(self, experiences: ExperienceMap, every: int = 1) -> Pose2:
-        """The pose of the map's frame in the office: the very fit after which `errors` measures the map. While the path is
-        too short to be aligned, by its end."""
+        """The pose of the map's frame in the office: the very fit after which `errors` measures the map. While the path
+        is too short to be aligned, by its end."""
         truth, mapped, _ = self.trajectories(experiences, every)
         if math.sqrt(np.var(truth, axis=0).sum()) >= LEAST_WAY_M:
             return alignment(mapped, truth)
@@ -202,7 +149,7 @@ class Evaluation:
         return self._odometry
 
     def odometry_path(self, ticks: int, every: int = 1) -> Points:
-        """(n, 2) the same in the last so many ticks, thinned; the newest is the last."""
+        """The places of `odometry` in the last so many ticks, thinned, (n, 2); the newest is the last."""
         last = self._rows[max(0, self._count - ticks) : self._count, 6:8]
         return last[::-1][::every][::-1]
 
@@ -250,10 +197,8 @@ class Evaluation:
             kidnap.agrees(time_s, _near(off_earlier_passes(*passes, _pose(truth), experiences.robot)))
 
     def _right(self, kidnap: Kidnapping, truth: Truth, experiences: ExperienceMap) -> bool | None:
-        """Whether place and heading are right where the robot believes itself to be; None if it is lost, or at a new place.
-
-        Place alone is not enough: a robot turned on the spot has not moved. Without a map the estimate stands for where
-        the robot was when it was nearest to this.
+        """Whether place and heading are right where the robot believes itself to be; None if it is lost, or at a new
+        place. Place alone is not enough: a robot turned on the spot has not moved.
         """
         if isinstance(experiences, CellsOnly):
             passes = self._passes_before(kidnap, experiences)
@@ -275,3 +220,52 @@ def _pose(truth: Truth) -> Pose2:
 
 def _near(off: tuple[float, float]) -> bool:
     return off[0] <= NEAR_M and off[1] <= NEAR_RAD
+
+
+AWAY_M = 2.0  # an earlier pass ended when the robot was this far away
+HERE_M, HERE_RAD = 0.5, 0.6  # a pass that came this near, facing the same way, went through here
+
+
+def off_earlier_passes(
+    true: NDArray[np.float64], estimated: NDArray[np.float64], here: Pose2, estimate: Pose2
+) -> tuple[float, float]:
+    """How far (m, rad) the estimate is from those of half of the earlier passes, at least. NaN where there was none.
+
+    true, estimated: the robot's poses so far, thinned, (n, 3) each, m and rad, row by row of one time.
+    The estimates need not be Cartesian: only the short way from where an earlier pass was counts as straight. Half,
+    since among many passes one agrees by chance, and a place may have two representations.
+    """
+    apart = np.hypot(true[:, 0] - here.x, true[:, 1] - here.y)
+    away = np.flatnonzero(apart > AWAY_M)
+    passed = slice(0, away[-1] if len(away) else 0)
+    turned = np.abs(np.remainder(true[passed, 2] - here.heading_rad + np.pi, 2 * np.pi) - np.pi)
+    passes = np.flatnonzero((apart[passed] < HERE_M) & (turned < HERE_RAD))
+    if not len(passes):
+        return math.nan, math.nan
+    then = true[passes]
+    turn = estimated[passes, 2] - then[:, 2]
+    dx, dy = here.x - then[:, 0], here.y - then[:, 1]
+    x = estimated[passes, 0] + np.cos(turn) * dx - np.sin(turn) * dy
+    y = estimated[passes, 1] + np.sin(turn) * dx + np.cos(turn) * dy
+    off = np.hypot(x - estimate.x, y - estimate.y)
+    half = int(np.argsort(off, kind="stable")[(len(off) - 1) // 2])
+    facing = estimate.heading_rad - here.heading_rad - float(turn[half])
+    return float(off[half]), abs(math.remainder(facing, math.tau))
+
+
+def off_same_estimate(
+    true: NDArray[np.float64], estimated: NDArray[np.float64], here: Pose2, estimate: Pose2
+) -> tuple[float, float]:
+    """How far (m, rad) the robot is from the place that its estimate stands for: where it truly was when its estimate
+    was nearest to what it is now. NaN where it never was near. true, estimated: as for `off_earlier_passes`.
+    """
+    apart = np.hypot(estimated[:, 0] - estimate.x, estimated[:, 1] - estimate.y)
+    turned = np.abs(np.remainder(estimated[:, 2] - estimate.heading_rad + np.pi, 2 * np.pi) - np.pi)
+    alike = np.flatnonzero((apart < HERE_M) & (turned < HERE_RAD))
+    if not len(alike):
+        return math.nan, math.nan
+    then = alike[np.argmin(apart[alike])]
+    moved = Pose2(*estimated[then].tolist()).inverse().compose(estimate)
+    stands_for = Pose2(*true[then].tolist()).compose(moved)
+    turn = abs(math.remainder(stands_for.heading_rad - here.heading_rad, math.tau))
+    return math.hypot(stands_for.x - here.x, stands_for.y - here.y), turn

@@ -1,7 +1,4 @@
-"""The files that an experiment leaves behind for people: its page, its figures, and the index of all.
-
-What an experiment leaves behind: its trials as CSV, its figures, and the page that shows them.
-"""
+"""What an experiment leaves behind for people: its trials as CSV, its figures, its page, and the index of all."""
 
 from __future__ import annotations
 
@@ -32,6 +29,15 @@ class Report:
     entry: Entry
 
 
+def write_outputs(
+    experiment: Experiment, stored: Sequence[StoredTrial], folder: Path, workers: Workers, *, command: str, quick: bool
+) -> tuple[Path, Report]:
+    """The table and the report. stored: the trials that were run; workers: run those again that the figures show."""
+    table = folder / f"{experiment.name}.csv"
+    write_csv(table, experiment, stored)
+    return table, write_report_page(experiment, list(stored), folder, workers.traces, command=command, quick=quick)
+
+
 def write_report_page(
     experiment: Experiment,
     trials: list[StoredTrial],
@@ -44,12 +50,11 @@ def write_report_page(
     """Write `NAME.html` into `out`, and each figure as SVG and PNG into `out/figures`.
 
     trials: those of this experiment, in any order; traces: runs some of them again, in the order given; quick: whether
-    they are those of the shortened experiment. ValueError names
-    an experiment and figure whose options do not fit.
+    they are those of the shortened experiment. ValueError names an experiment and figure whose options do not fit.
     """
     good = sorted((t for t in trials if not t.error), key=lambda t: (t.seed, t.engine, t.levels))
     material = Material(experiment, good)
-    drawn = figures_of(material, traces, quick=quick) if good else []
+    drawn = _figures_of(material, traces, quick) if good else []
     folder = out / "figures"
     folder.mkdir(parents=True, exist_ok=True)
     written: list[Path] = []
@@ -64,44 +69,7 @@ def write_report_page(
     return Report(page, written, Entry(experiment, page.name, found(experiment, material.cells), picture, len(good)))
 
 
-def check_drawing(experiment: Experiment) -> None:
-    """Draw what it will draw, of scores that are made up. ValueError: a figure or the page cannot be drawn.
-
-    Figures of single trials are left out: they need runs.
-    """
-    good = _made_up(experiment)
-    specs = [spec for spec in experiment.figures if spec.kind not in NEED_TRACES]
-    material = Material(experiment, good)
-    table_of(experiment, material.cells)
-    drawn: list[Drawn] = []
-    for spec in specs:
-        try:
-            drawn.append(draw(spec, material))
-            png_of(drawn[-1].figure)
-        except Exception as error:  # whatever matplotlib raises
-            raise ValueError(f"figure {spec.title or spec.kind!r} cannot be drawn: {words_of(error)}") from None
-    page_of(material, drawn, "", [])
-
-
-def _made_up(experiment: Experiment) -> list[StoredTrial]:
-    """Two trials in each cell, which have all scores."""
-    names = {str(name) for score in experiment.scores for name in (score.score, *(score.rate or ())) if name}
-    cells = [tuple(level.label for level in cell) for cell in experiment.cells()]
-    keys = [(engine, levels, seed) for seed in (1, 2) for engine in experiment.engines for levels in cells]
-    return [
-        StoredTrial(f"{number:016x}", engine, levels, seed, dict.fromkeys(names, float(seed)), 1.0, "made up")
-        for number, (engine, levels, seed) in enumerate(keys)
-    ]
-
-
-def write_index(reports: list[Report], out: Path, command: str) -> Path:
-    """Write `index.html` into `out`: all experiments, each with its first figure."""
-    path = out / "index.html"
-    path.write_text(index_of([report.entry for report in reports], command), encoding="utf-8")
-    return path
-
-
-def figures_of(material: Material, traces: Callable[[list[Trial]], list[Trace]], *, quick: bool = False) -> list[Drawn]:
+def _figures_of(material: Material, traces: Callable[[list[Trial]], list[Trace]], quick: bool) -> list[Drawn]:
     """All figures of an experiment; the trials that they show are run again, each once."""
     experiment = material.experiment
     ids = list(dict.fromkeys(each for spec in experiment.figures for each in wanted(spec, material)))
@@ -121,6 +89,13 @@ def trials_by_id(experiment: Experiment, stored: list[StoredTrial], *, quick: bo
     return {trial.id: trial for trial in experiment.make_trials(trials=max(most, 1), quick=quick)}
 
 
+def write_index(reports: list[Report], out: Path, command: str) -> Path:
+    """Write `index.html` into `out`: all experiments, each with its first figure."""
+    path = out / "index.html"
+    path.write_text(index_of([report.entry for report in reports], command), encoding="utf-8")
+    return path
+
+
 def make_folder(folder: Path) -> Path:
     """The folder, made if it does not exist. ValueError says why it cannot be."""
     try:
@@ -130,10 +105,29 @@ def make_folder(folder: Path) -> Path:
     return folder
 
 
-def write_outputs(
-    experiment: Experiment, stored: Sequence[StoredTrial], folder: Path, workers: Workers, *, command: str, quick: bool
-) -> tuple[Path, Report]:
-    """The table and the report. stored: the trials that were run; workers: run those again that the figures show."""
-    table = folder / f"{experiment.name}.csv"
-    write_csv(table, experiment, stored)
-    return table, write_report_page(experiment, list(stored), folder, workers.traces, command=command, quick=quick)
+def check_drawing(experiment: Experiment) -> None:
+    """Draw what it will draw, of scores that are made up. ValueError: a figure or the page cannot be drawn.
+
+    Figures of single trials are left out: they need runs.
+    """
+    material = Material(experiment, _made_up(experiment))
+    table_of(experiment, material.cells)
+    drawn: list[Drawn] = []
+    for spec in (spec for spec in experiment.figures if spec.kind not in NEED_TRACES):
+        try:
+            drawn.append(draw(spec, material))
+            png_of(drawn[-1].figure)
+        except Exception as error:  # whatever matplotlib raises
+            raise ValueError(f"figure {spec.title or spec.kind!r} cannot be drawn: {words_of(error)}") from None
+    page_of(material, drawn, "", [])
+
+
+def _made_up(experiment: Experiment) -> list[StoredTrial]:
+    """Two trials in each cell, which have all scores."""
+    names = {str(name) for score in experiment.scores for name in (score.score, *(score.rate or ())) if name}
+    cells = [tuple(level.label for level in cell) for cell in experiment.cells()]
+    keys = [(engine, levels, seed) for seed in (1, 2) for engine in experiment.engines for levels in cells]
+    return [
+        StoredTrial(f"{number:016x}", engine, levels, seed, dict.fromkeys(names, float(seed)), 1.0, "made up")
+        for number, (engine, levels, seed) in enumerate(keys)
+    ]

@@ -1,6 +1,6 @@
-"""Runs the trials that are not in the store, in batches, on all workers. This process alone writes to the store.
+"""Runs the trials that are not in the store, in batches, on all workers, and says before how long that will take.
 
-How long an experiment will take.
+This process alone writes to the store.
 """
 
 from __future__ import annotations
@@ -18,46 +18,13 @@ from app.experiments.workers import RunOne, run_batch, run_stored
 from app.trials.experiment import Experiment
 from app.trials.trial import Trial
 
-REAL_TIMES = 100.0  # simulated seconds in one of a core, where nothing has been measured
-SET_UP_S = 0.5  # of a session
-
-
-@dataclass(frozen=True, slots=True)
-class Duration:
-    """Wall time of trials on one core, in s. measured: each engine's from trials that were run on this store's machine."""
-
-    seconds: float
-    trials: int
-    measured: bool
-
-    def words(self, workers: int) -> str:
-        """Such as `12 min, measured`."""
-        return f"{time_words(self.seconds / max(1, workers))}, {'measured' if self.measured else 'estimated'}"
-
-
-def duration_of(
-    experiment: Experiment, trials: Counter[str], measured: dict[str, float], quick: bool = False
-) -> Duration:
-    """trials: how many, by engine. measured: wall seconds of a trial, by engine, as far as they are known."""
-    estimated_s = experiment.seconds(quick) / REAL_TIMES + SET_UP_S
-    seconds = sum(measured.get(engine, estimated_s) * count for engine, count in trials.items())
-    return Duration(seconds, trials.total(), all(engine in measured for engine in trials))
-
-
-def time_words(seconds: float) -> str:
-    """Such as `40 s`, `12 min` or `3.5 h`."""
-    if seconds < 90:
-        return f"{max(1, round(seconds))} s"
-    if seconds < 5400:
-        return f"{seconds / 60:.0f} min"
-    return f"{seconds / 3600:.1f} h"
-
-
 BATCH_S = 2.0  # work in a batch: what is lost with a worker, against what handing it out costs
 MOST_AT_ONCE = 250  # trials in a batch, if they do nothing
 AHEAD = 3  # batches handed out for each thread, so that none waits for the client
 TRIES = 4  # a trial whose worker died so often has failed
 COUNT_EVERY_S = 2.0  # how often the threads are counted: a cluster may grow
+REAL_TIMES = 100.0  # simulated seconds in one of a core, where nothing has been measured
+SET_UP_S = 0.5  # of a session
 
 Tell = Callable[[Sequence[tuple[Trial, Outcome]]], None]
 
@@ -159,3 +126,34 @@ class _Running:
         if now_s - self._counted_s > COUNT_EVERY_S:
             self._threads, self._counted_s = max(1, sum(self._client.nthreads().values())), now_s
         return self._threads
+
+
+@dataclass(frozen=True, slots=True)
+class Duration:
+    """Wall time of trials on one core, in s. measured: each engine's from trials that were run on this store's machine."""
+
+    seconds: float
+    trials: int
+    measured: bool
+
+    def words(self, workers: int) -> str:
+        """Such as `12 min, measured`."""
+        return f"{time_words(self.seconds / max(1, workers))}, {'measured' if self.measured else 'estimated'}"
+
+
+def duration_of(
+    experiment: Experiment, trials: Counter[str], measured: dict[str, float], quick: bool = False
+) -> Duration:
+    """trials: how many, by engine. measured: wall seconds of a trial, by engine, as far as they are known."""
+    estimated_s = experiment.seconds(quick) / REAL_TIMES + SET_UP_S
+    seconds = sum(measured.get(engine, estimated_s) * count for engine, count in trials.items())
+    return Duration(seconds, trials.total(), all(engine in measured for engine in trials))
+
+
+def time_words(seconds: float) -> str:
+    """Such as `40 s`, `12 min` or `3.5 h`."""
+    if seconds < 90:
+        return f"{max(1, round(seconds))} s"
+    if seconds < 5400:
+        return f"{seconds / 60:.0f} min"
+    return f"{seconds / 3600:.1f} h"

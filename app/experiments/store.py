@@ -1,12 +1,6 @@
 """Trials and their scores in one SQLite file. Trajectories are not kept: the same trial runs again, bit for bit.
 
-How a trial ended: with a result, or with an error.
-
-A trial that was run: what it was, and its scores.
-
-A trial as text, from which it can be made again even when its experiment's file has changed.
-
-The tables of the file in which trials are kept.
+All of a trial is kept as text, from which it can be made again even when its experiment's file has changed.
 """
 
 from __future__ import annotations
@@ -30,66 +24,10 @@ from app.trials.trial import Result, Trial
 from disk import kept_folder
 from disk.locks import require_record_locks
 
-
-@dataclass(frozen=True, slots=True)
-class Outcome:
-    """Of the trial with this id. Exactly one of result and error is given."""
-
-    trial_id: str
-    result: Result | None = None
-    error: str = ""  # in words
-
-
-@dataclass(frozen=True, slots=True)
-class StoredTrial:
-    """One row of the store. A trial that failed has an error, no scores, and is run again by the next command."""
-
-    id: str
-    engine: str
-    levels: tuple[str, ...]  # of each axis, by label
-    seed: int
-    scores: dict[str, float]
-    moment_s: float  # simulated time of the moment that decided the trial
-    moment_words: str
-    simulated_s: float = 0.0
-    wall_s: float = 0.0
-    error: str = ""
-    version: str = ""  # of the code
-    quick: bool = False
-
-
-_STEPS: TypeAdapter[tuple[Step, ...]] = TypeAdapter(tuple[Step, ...])
-
-
-def definition_of(trial: Trial) -> str:
-    """All of a trial but its seed, as JSON: the trials of a cell share it."""
-    tree = {
-        "experiment": trial.experiment,
-        "engine": trial.engine,
-        "levels": trial.levels,
-        "world": trial.world,
-        "world_text": trial.world_text,
-        "values": trial.values,
-        "protocol": _STEPS.dump_python(trial.protocol, mode="json"),
-        "measures": trial.measures,
-        "version": trial.version,
-        "quick": trial.quick,
-    }
-    return json.dumps(tree, sort_keys=True, separators=(",", ":"))
-
-
-def trial_from(definition: str, seed: int) -> Trial:
-    """The trial whose definition this is."""
-    tree: dict[str, Any] = json.loads(definition)
-    return Trial(
-        tree["experiment"], tree["engine"], tuple(tree["levels"]), seed, tree["world"], tree["world_text"], tree["values"],
-        _STEPS.validate_python(tree["protocol"]), tuple(tree["measures"]), tree["version"], tree["quick"],
-    )  # fmt: skip
-
-
 VERSION = 1  # of these tables, kept as the file's user_version
 BUSY_S = 60.0  # how long a command that writes waits for another that does
 READ_BUSY_S = 0.5  # and one that only reads: the file's journal lets it read meanwhile, unless somebody locks it whole
+_AT_ONCE = 500  # ids in one question
 
 _TABLES = """
 CREATE TABLE definitions (
@@ -122,86 +60,38 @@ CREATE TABLE scores (
     PRIMARY KEY (trial, name)
 ) WITHOUT ROWID;
 """
-
-
-def broken(path: Path, error: sqlite3.Error) -> ValueError:
-    """What is wrong with the file, and the way out."""
-    if "locked" in str(error) or "busy" in str(error):
-        return ValueError(
-            f"--store {path}: another program has locked it; end that one, or name another file by --store"
-        )
-    return ValueError(
-        f"--store {path}: {error}; name a file that `ratslam experiment` has made, or a new one; or move this one away, and a "
-        "new one is begun in its place"
-    )
-
-
-def opened(path: Path) -> sqlite3.Connection:
-    """A file that exists, to be read only and without waiting. ValueError if it cannot be, or is something else."""
-    where = f"{path.absolute().as_uri()}?mode=ro"
-    try:
-        connection = sqlite3.connect(
-            where, uri=True, timeout=READ_BUSY_S, isolation_level=None, check_same_thread=False
-        )
-    except sqlite3.Error as error:
-        raise broken(path, error) from None
-    return _ready(connection, path, _require_ours)
-
-
-def connected(path: Path) -> sqlite3.Connection:
-    """The file, made if it does not exist. ValueError if it is something else, or of a newer program."""
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        way_out = "the trials need; keep them on a local disk: --store FILE, or RATSLAM_EXPERIMENTS"
-        require_record_locks(path.parent, way_out)
-        connection = sqlite3.connect(path, timeout=BUSY_S, isolation_level=None, check_same_thread=False)
-    except (OSError, sqlite3.OperationalError) as error:
-        raise ValueError(f"--store {path}: {getattr(error, 'strerror', None) or error}") from None
-    return _ready(connection, path, _make_tables)
-
-
-def _ready(
-    connection: sqlite3.Connection, path: Path, prepare: Callable[[sqlite3.Connection, Path], None]
-) -> sqlite3.Connection:
-    """The connection, prepared; closed again if that fails."""
-    try:
-        prepare(connection, path)
-    except (sqlite3.Error, ValueError) as error:
-        connection.close()
-        raise (broken(path, error) if isinstance(error, sqlite3.Error) else error) from None
-    return connection
-
-
-def _make_tables(connection: sqlite3.Connection, path: Path) -> None:
-    connection.execute("PRAGMA journal_mode = WAL")
-    connection.execute("PRAGMA synchronous = NORMAL")  # a killed process loses nothing; a power cut the last moments
-    connection.execute("PRAGMA foreign_keys = ON")
-    connection.execute("BEGIN IMMEDIATE")  # two commands may begin at once
-    found = connection.execute("PRAGMA user_version").fetchone()[0]
-    empty = not connection.execute("SELECT count(*) FROM sqlite_master").fetchone()[0]
-    if found == 0 and empty:
-        for statement in _TABLES.split(";\n"):
-            connection.execute(statement)
-        connection.execute(f"PRAGMA user_version = {VERSION}")
-    connection.execute("COMMIT")
-    _require_ours(connection, path)
-
-
-def _require_ours(connection: sqlite3.Connection, path: Path) -> None:
-    found = connection.execute("PRAGMA user_version").fetchone()[0]
-    if found == 0:
-        raise ValueError(f"--store {path}: this is another program's database; name a new file")
-    if found > VERSION:
-        raise ValueError(
-            f"--store {path}: its tables have version {found}, this program knows {VERSION}; use a newer program, or a new file"
-        )
-
-
-_AT_ONCE = 500  # ids in one question
 _COLUMNS = "id, engine, levels, seed, moment_s, moment, simulated_s, wall_s, error, version, quick"
 # "OR IGNORE" would also pass over a row that lacks a value
 _INSERT = f"INSERT INTO trials VALUES ({', '.join('?' * 16)}) ON CONFLICT (id) DO NOTHING"
 _MADE_AGAIN = "SELECT text, seed FROM trials JOIN definitions ON digest = definition WHERE substr(id, 1, ?) = ? LIMIT 2"
+_STEPS: TypeAdapter[tuple[Step, ...]] = TypeAdapter(tuple[Step, ...])
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """How the trial with this id ended. Exactly one of result and error is given."""
+
+    trial_id: str
+    result: Result | None = None
+    error: str = ""  # in words
+
+
+@dataclass(frozen=True, slots=True)
+class StoredTrial:
+    """A trial that was run, and its scores. One that failed has an error, no scores, and is run again by the next command."""
+
+    id: str
+    engine: str
+    levels: tuple[str, ...]  # of each axis, by label
+    seed: int
+    scores: dict[str, float]
+    moment_s: float  # simulated time of the moment that decided the trial
+    moment_words: str
+    simulated_s: float = 0.0
+    wall_s: float = 0.0
+    error: str = ""
+    version: str = ""  # of the code
+    quick: bool = False
 
 
 def default_path() -> Path:
@@ -216,7 +106,7 @@ class Store:
         """reading: nothing is added, and nobody waited for; the file must exist then. ValueError, here and from everything that
         is asked of it: the file cannot be made or read, or is something else."""
         self.path = path or default_path()
-        self._db = opened(self.path) if reading else connected(self.path)
+        self._db = _opened(self.path) if reading else connected(self.path)
 
     def __enter__(self) -> Store:
         return self
@@ -226,8 +116,6 @@ class Store:
 
     def close(self) -> None:
         self._db.close()
-
-    # ------------------------------------------------------------ writing
 
     def add(self, ended: Iterable[tuple[Trial, Outcome]]) -> int:
         """Keep these trials, all or none, and return how many are new. A trial that is kept already stays as it is."""
@@ -253,7 +141,7 @@ class Store:
 
     def _definition(self, trial: Trial) -> str:
         """The digest of a definition that is in the file."""
-        text = definition_of(trial)
+        text = _definition_of(trial)
         digest = hashlib.sha256(text.encode()).hexdigest()[:16]
         self._db.execute("INSERT OR IGNORE INTO definitions VALUES (?, ?)", (digest, text))
         return digest
@@ -272,16 +160,8 @@ class Store:
                     f"{self.path}: {error}; what was kept before is safe, and the same command goes on"
                 ) from None
             if isinstance(error, sqlite3.DatabaseError) and not isinstance(error, sqlite3.IntegrityError):
-                raise broken(self.path, error) from None
+                raise _broken(self.path, error) from None
             raise
-
-    # ------------------------------------------------------------ reading
-
-    def _ask(self, question: str, values: Sequence[Any] = ()) -> list[tuple[Any, ...]]:
-        try:
-            return self._db.execute(question, values).fetchall()
-        except sqlite3.DatabaseError as error:
-            raise broken(self.path, error) from None
 
     def done(self, ids: Iterable[str]) -> set[str]:
         """Which of these trials have scores."""
@@ -292,9 +172,7 @@ class Store:
         ids = list({trial.id for trial in trials})
         rows = {row[0]: row for row in self._asked(f"SELECT {_COLUMNS} FROM trials WHERE id IN", ids)}
         scores = self._scores(list(rows))
-        return [
-            _stored(rows[trial.id], scores, trial.engine, trial.levels) for trial in trials if trial.id in rows
-        ]  # fmt: skip
+        return [_stored(rows[trial.id], scores, trial.engine, trial.levels) for trial in trials if trial.id in rows]
 
     def of_experiment(self, name: str) -> list[StoredTrial]:
         """All trials ever run for an experiment, by any version of the program."""
@@ -319,7 +197,7 @@ class Store:
         """The trial with this id, or whose id alone begins so. ValueError lists ids that are close."""
         rows = self._ask(_MADE_AGAIN, (len(trial_id), trial_id))
         if len(rows) == 1 and trial_id:
-            return trial_from(*rows[0])
+            return _trial_from(*rows[0])
         raise ValueError(self._unknown(trial_id, several=len(rows) > 1))
 
     def moment(self, trial_id: str) -> tuple[float, str]:
@@ -349,6 +227,12 @@ class Store:
             some = ids[start : start + _AT_ONCE]
             yield from self._ask(f"{question} ({','.join('?' * len(some))})", some)
 
+    def _ask(self, question: str, values: Sequence[Any] = ()) -> list[tuple[Any, ...]]:
+        try:
+            return self._db.execute(question, values).fetchall()
+        except sqlite3.DatabaseError as error:
+            raise _broken(self.path, error) from None
+
 
 def _stored(
     row: Sequence[Any], scores: dict[str, dict[str, float]], engine: str, levels: tuple[str, ...]
@@ -358,3 +242,102 @@ def _stored(
         trial_id, engine, levels, seed, scores.get(trial_id, {}), moment_s, words, simulated_s, wall_s, error, version,
         bool(quick),
     )  # fmt: skip
+
+
+def _definition_of(trial: Trial) -> str:
+    """All of a trial but its seed, as JSON: the trials of a cell share it."""
+    tree = {
+        "experiment": trial.experiment,
+        "engine": trial.engine,
+        "levels": trial.levels,
+        "world": trial.world,
+        "world_text": trial.world_text,
+        "values": trial.values,
+        "protocol": _STEPS.dump_python(trial.protocol, mode="json"),
+        "measures": trial.measures,
+        "version": trial.version,
+        "quick": trial.quick,
+    }
+    return json.dumps(tree, sort_keys=True, separators=(",", ":"))
+
+
+def _trial_from(definition: str, seed: int) -> Trial:
+    """The trial whose definition this is."""
+    tree: dict[str, Any] = json.loads(definition)
+    return Trial(
+        tree["experiment"], tree["engine"], tuple(tree["levels"]), seed, tree["world"], tree["world_text"], tree["values"],
+        _STEPS.validate_python(tree["protocol"]), tuple(tree["measures"]), tree["version"], tree["quick"],
+    )  # fmt: skip
+
+
+def _opened(path: Path) -> sqlite3.Connection:
+    """A file that exists, to be read only and without waiting. ValueError if it cannot be, or is something else."""
+    where = f"{path.absolute().as_uri()}?mode=ro"
+    try:
+        connection = sqlite3.connect(
+            where, uri=True, timeout=READ_BUSY_S, isolation_level=None, check_same_thread=False
+        )
+    except sqlite3.Error as error:
+        raise _broken(path, error) from None
+    return _ready(connection, path, _require_ours)
+
+
+def connected(path: Path) -> sqlite3.Connection:
+    """The file, made if it does not exist. ValueError if it is something else, or of a newer program."""
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        way_out = "the trials need; keep them on a local disk: --store FILE, or RATSLAM_EXPERIMENTS"
+        require_record_locks(path.parent, way_out)
+        connection = sqlite3.connect(path, timeout=BUSY_S, isolation_level=None, check_same_thread=False)
+    except (OSError, sqlite3.OperationalError) as error:
+        raise ValueError(f"--store {path}: {getattr(error, 'strerror', None) or error}") from None
+    return _ready(connection, path, _make_tables)
+
+
+def _ready(
+    connection: sqlite3.Connection, path: Path, prepare: Callable[[sqlite3.Connection, Path], None]
+) -> sqlite3.Connection:
+    """The connection, prepared; closed again if that fails."""
+    try:
+        prepare(connection, path)
+    except (sqlite3.Error, ValueError) as error:
+        connection.close()
+        raise (_broken(path, error) if isinstance(error, sqlite3.Error) else error) from None
+    return connection
+
+
+def _make_tables(connection: sqlite3.Connection, path: Path) -> None:
+    connection.execute("PRAGMA journal_mode = WAL")
+    connection.execute("PRAGMA synchronous = NORMAL")  # a killed process loses nothing; a power cut the last moments
+    connection.execute("PRAGMA foreign_keys = ON")
+    connection.execute("BEGIN IMMEDIATE")  # two commands may begin at once
+    found = connection.execute("PRAGMA user_version").fetchone()[0]
+    empty = not connection.execute("SELECT count(*) FROM sqlite_master").fetchone()[0]
+    if found == 0 and empty:
+        for statement in _TABLES.split(";\n"):
+            connection.execute(statement)
+        connection.execute(f"PRAGMA user_version = {VERSION}")
+    connection.execute("COMMIT")
+    _require_ours(connection, path)
+
+
+def _require_ours(connection: sqlite3.Connection, path: Path) -> None:
+    found = connection.execute("PRAGMA user_version").fetchone()[0]
+    if found == 0:
+        raise ValueError(f"--store {path}: this is another program's database; name a new file")
+    if found > VERSION:
+        raise ValueError(
+            f"--store {path}: its tables have version {found}, this program knows {VERSION}; use a newer program, or a new file"
+        )
+
+
+def _broken(path: Path, error: sqlite3.Error) -> ValueError:
+    """What is wrong with the file, and the way out."""
+    if "locked" in str(error) or "busy" in str(error):
+        return ValueError(
+            f"--store {path}: another program has locked it; end that one, or name another file by --store"
+        )
+    return ValueError(
+        f"--store {path}: {error}; name a file that `ratslam experiment` has made, or a new one; or move this one away, and a "
+        "new one is begun in its place"
+    )

@@ -1,12 +1,6 @@
-"""The table of an experiment: each of its scores by cell and engine, with intervals.
-
-Engines, scores and cells in words.
+"""The table of an experiment: each of its scores by cell and engine, with 95 % intervals, also in words and sentences.
 
 How sure a figure is: Wilson's interval for a rate, the bootstrap for the rest.
-
-What we found, in sentences made from the numbers, so that they cannot say anything else.
-
-The table of an experiment on a terminal: a row for each cell and engine, its scores with their intervals.
 """
 
 from __future__ import annotations
@@ -28,31 +22,15 @@ ENGINE_WORDS = {
     "paper": "the paper's rules", "paper-2005": "the rules of 2005", "paper-2006": "the rules of 2006", "ours": "our rules",
 }  # fmt: skip
 
-
-def value_of(score: Score, trial: StoredTrial) -> float | None:
-    """The score of one trial; None where it has none."""
-    if score.rate is None:
-        return trial.scores.get(str(score.score))
-    good, of = (trial.scores.get(name) for name in score.rate)
-    return (good or 0.0) / of if of else None
-
-
-def words_of(score: Score, value: float) -> str:
-    """A value of a score with its unit."""
-    if score.rate is not None:
-        return f"{100 * value:.0f} %"
-    text = f"{value:.0f}" if abs(value) >= 100 or value == int(value) else f"{value:.3g}"
-    return f"{text} {score.unit}".rstrip()
-
-
-Z_95 = 1.959963984540054  # 95 % of a normal distribution lie within so many standard deviations of its mean
+_Z_95 = 1.959963984540054  # 95 % of a normal distribution lie within so many standard deviations of its mean
 _PER_CENT = 2.5, 97.5
 _RESAMPLES = 2000
 _LEAST_RESAMPLES = 200
 _DRAWS = 2_000_000  # at most, in all resamples: ten thousand values need fewer of them
 _SEED = 2006
+_MOST_ORIGINALS = 6  # the table has the others
 
-_Statistic = Callable[..., Any]
+CellKey = tuple[str, tuple[str, ...]]  # engine, and levels by label
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,46 +41,6 @@ class Estimate:
     low: float
     high: float
     n: int
-
-
-def wilson(successes: int, of: int) -> Estimate:
-    """A rate from 0 to 1 and its interval, after Wilson (1927). ValueError if there are more successes than trials."""
-    if not 0 <= successes <= of:
-        raise ValueError(f"successes must be from 0 to of = {of}, got {successes}")
-    if of == 0:
-        return Estimate(math.nan, 0.0, 1.0, 0)
-    rate, z2 = successes / of, Z_95**2
-    middle = (rate + z2 / (2 * of)) / (1 + z2 / of)
-    half = Z_95 / (1 + z2 / of) * math.sqrt(rate * (1 - rate) / of + z2 / (4 * of * of))
-    low = 0.0 if successes == 0 else middle - half  # exactly, where the sum would leave a rounding error
-    return Estimate(rate, low, 1.0 if successes == of else middle + half, of)
-
-
-def bootstrap_median(values: Sequence[float]) -> Estimate:
-    """The median and its interval. The same values in the same order give the same interval."""
-    return _bootstrap(values, np.median)
-
-
-def bootstrap_mean(values: Sequence[float]) -> Estimate:
-    """The mean and its interval. The same values in the same order give the same interval."""
-    return _bootstrap(values, np.mean)
-
-
-def _bootstrap(values: Sequence[float], statistic: _Statistic) -> Estimate:
-    """Percentiles of the statistic over samples drawn from the values with replacement (Efron 1979)."""
-    sample: NDArray[np.float64] = np.asarray(values, np.float64)
-    n = len(sample)
-    if n == 0:
-        return Estimate(math.nan, math.nan, math.nan, 0)
-    if n == 1:
-        return Estimate(float(sample[0]), math.nan, math.nan, 1)
-    resamples = max(_LEAST_RESAMPLES, min(_RESAMPLES, _DRAWS // n))
-    drawn = sample[np.random.default_rng(_SEED).integers(0, n, (resamples, n))]
-    low, high = np.percentile(statistic(drawn, axis=1), _PER_CENT)
-    return Estimate(float(statistic(sample)), float(low), float(high), n)
-
-
-CellKey = tuple[str, tuple[str, ...]]  # engine, and levels by label
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,7 +71,13 @@ def place_in(experiment: Experiment) -> Callable[[CellKey], tuple[tuple[int, int
     return lambda key: (order.get(key, last), key)
 
 
-def estimate(score: Score, trials: Iterable[StoredTrial]) -> Estimate:
+def _summary(experiment: Experiment, engine: str, levels: tuple[str, ...], trials: list[StoredTrial]) -> CellSummary:
+    good = [trial for trial in trials if not trial.error]
+    values = {score.label: _estimate(score, good) for score in experiment.scores}
+    return CellSummary(engine, levels, len(good), len(trials) - len(good), values)
+
+
+def _estimate(score: Score, trials: Iterable[StoredTrial]) -> Estimate:
     """A rate is counted over all trials together; any other score is given by its median. Trials without it do not count."""
     if score.rate is None:
         name = str(score.score)
@@ -141,6 +85,59 @@ def estimate(score: Score, trials: Iterable[StoredTrial]) -> Estimate:
     good, of = score.rate
     counted = [trial.scores for trial in trials if of in trial.scores]
     return wilson(round(sum(each.get(good, 0.0) for each in counted)), round(sum(each[of] for each in counted)))
+
+
+def wilson(successes: int, of: int) -> Estimate:
+    """A rate from 0 to 1 and its interval, after Wilson (1927). ValueError if there are more successes than trials."""
+    if not 0 <= successes <= of:
+        raise ValueError(f"successes must be from 0 to of = {of}, got {successes}")
+    if of == 0:
+        return Estimate(math.nan, 0.0, 1.0, 0)
+    rate, z2 = successes / of, _Z_95**2
+    middle = (rate + z2 / (2 * of)) / (1 + z2 / of)
+    half = _Z_95 / (1 + z2 / of) * math.sqrt(rate * (1 - rate) / of + z2 / (4 * of * of))
+    low = 0.0 if successes == 0 else middle - half  # exactly, where the sum would leave a rounding error
+    return Estimate(rate, low, 1.0 if successes == of else middle + half, of)
+
+
+def bootstrap_median(values: Sequence[float]) -> Estimate:
+    """The median and its interval. The same values in the same order give the same interval."""
+    return _bootstrap(values, np.median)
+
+
+def bootstrap_mean(values: Sequence[float]) -> Estimate:
+    """The mean and its interval. The same values in the same order give the same interval."""
+    return _bootstrap(values, np.mean)
+
+
+def _bootstrap(values: Sequence[float], statistic: Callable[..., Any]) -> Estimate:
+    """Percentiles of the statistic over samples drawn from the values with replacement (Efron 1979)."""
+    sample: NDArray[np.float64] = np.asarray(values, np.float64)
+    n = len(sample)
+    if n == 0:
+        return Estimate(math.nan, math.nan, math.nan, 0)
+    if n == 1:
+        return Estimate(float(sample[0]), math.nan, math.nan, 1)
+    resamples = max(_LEAST_RESAMPLES, min(_RESAMPLES, _DRAWS // n))
+    drawn = sample[np.random.default_rng(_SEED).integers(0, n, (resamples, n))]
+    low, high = np.percentile(statistic(drawn, axis=1), _PER_CENT)
+    return Estimate(float(statistic(sample)), float(low), float(high), n)
+
+
+def value_of(score: Score, trial: StoredTrial) -> float | None:
+    """The score of one trial; None where it has none."""
+    if score.rate is None:
+        return trial.scores.get(str(score.score))
+    good, of = (trial.scores.get(name) for name in score.rate)
+    return (good or 0.0) / of if of else None
+
+
+def words_of(score: Score, value: float) -> str:
+    """A value of a score with its unit."""
+    if score.rate is not None:
+        return f"{100 * value:.0f} %"
+    text = f"{value:.0f}" if abs(value) >= 100 or value == int(value) else f"{value:.3g}"
+    return f"{text} {score.unit}".rstrip()
 
 
 def words(value: Estimate, score: Score) -> str:
@@ -160,17 +157,9 @@ def _digits(value: float) -> str:
     return f"{value:.0f}" if abs(value) >= 100 else f"{value:.3g}"
 
 
-def _summary(experiment: Experiment, engine: str, levels: tuple[str, ...], trials: list[StoredTrial]) -> CellSummary:
-    good = [trial for trial in trials if not trial.error]
-    values = {score.label: estimate(score, good) for score in experiment.scores}
-    return CellSummary(engine, levels, len(good), len(trials) - len(good), values)
-
-
-_MOST_ORIGINALS = 6  # the table has the others
-
-
 def found(experiment: Experiment, cells: list[CellSummary]) -> list[str]:
-    """A sentence for each engine, then one for each value of the paper."""
+    """What we found, in sentences made from the numbers, so that they cannot say anything else: one for each engine, then one
+    for each value of the paper."""
     engines = [engine for engine in experiment.engines if any(cell.engine == engine for cell in cells)]
     says = [_engine(experiment, engine, [c for c in cells if c.engine == engine]) for engine in engines]
     originals = experiment.original[:_MOST_ORIGINALS] if cells else []
@@ -207,7 +196,10 @@ def _original(experiment: Experiment, cells: list[CellSummary], original: Origin
 
 
 def table_of(experiment: Experiment, rows: Sequence[CellSummary]) -> Table:
-    """n: trials; failed ones are told after it. Labels are the user's: as `Text`, rich reads no markup in them."""
+    """A row for each cell and engine, for a terminal. n: trials; failed ones are told after it.
+
+    Labels are the user's: as `Text`, rich reads no markup in them.
+    """
     table = Table(box=None, header_style="bold", pad_edge=False)
     for name in (*(axis.name for axis in experiment.axes), "engine"):
         table.add_column(Text(name), no_wrap=True)

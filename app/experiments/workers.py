@@ -1,8 +1,7 @@
-"""The workers of one command: started when the first trial needs them, and ended with it.
+"""The workers that run trials: some on this machine, or those of a Dask cluster that exists.
 
-What a worker does: a batch of trials, one after the other.
-
-The workers that run trials: some on this machine, or those of a Dask cluster that exists.
+They are started when the first trial needs them, and ended with the command. A worker runs a batch of trials, one after the
+other. This file loads no kernel before a trial is run, as `ratslam experiment` asks it for the number of cores.
 """
 
 from __future__ import annotations
@@ -15,42 +14,16 @@ import signal
 from collections.abc import Callable, Generator, Sequence
 from importlib import import_module
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from app.experiments.store import Outcome
 from app.trials.code_version import code_version
-from app.trials.trace import Trace, trace_of
 from app.trials.trial import Result, Trial, run_trial
 
+if TYPE_CHECKING:
+    from app.trials.trace import Trace
+
 RunOne = Callable[[Trial], Result]
-
-
-def run_stored(trial: Trial) -> Result:
-    """Run a trial to its end. ValueError if it was made by another version of the program than this worker's."""
-    if trial.version != code_version():
-        raise ValueError(f"this worker's program is version {code_version()}, the trial is of {trial.version}")
-    return run_trial(trial)[0]
-
-
-def run_batch(trials: Sequence[Trial], run: RunOne) -> list[Outcome]:
-    """A trial that fails is an outcome, too: the others of its batch go on."""
-    return [_outcome(trial, run) for trial in trials]
-
-
-def _outcome(trial: Trial, run: RunOne) -> Outcome:
-    try:
-        return Outcome(trial.id, run(trial))
-    except Exception as error:
-        return Outcome(trial.id, error=f"{type(error).__name__}: {error}")
-
-
-def dask_setup(_worker: object) -> None:
-    """Called by Dask in each worker of our own cluster: one core each, and Ctrl+C is the client's matter."""
-    import cv2
-
-    cv2.setNumThreads(1)
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-
 
 _ROOT = Path(__file__).parents[2]
 HERE = "127.0.0.1"
@@ -66,6 +39,47 @@ _CONFIG: dict[str, Any] = {
     "distributed.admin.low-level-log-length": 100,
     "distributed.deploy.lost-worker-timeout": "1 day",  # a nanny starts its worker again, however slow the machine is
 }
+
+
+class Workers:
+    """Use it in a `with` block. scheduler: the address of a Dask cluster; without one, processes on this machine."""
+
+    def __init__(self, scheduler: str | None, count: int | None, before: Callable[[], None] = lambda: None) -> None:
+        """before: done just before the workers start, such as compiling the kernels, once for all of them."""
+        self._scheduler, self._before = scheduler, before
+        self.count = count or cores()  # as far as is known
+        self._stack = contextlib.ExitStack()
+        self._client: Any = None
+
+    def __enter__(self) -> Workers:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._client = None
+        self._stack.close()
+
+    @property
+    def client(self) -> Any:
+        """The Dask client. ValueError: no cluster answers, or it runs another version of the program."""
+        if self._client is None:
+            self._before()
+            self._client = self._stack.enter_context(connected_to(self._scheduler, self.count))
+            self.count = max(1, sum(self._client.nthreads().values()))
+        return self._client
+
+    def traces(self, trials: Sequence[Trial]) -> list[Trace]:
+        """Trials run again and written down, in this order, for the figures."""
+        if not trials:
+            return []
+        from app.trials.trace import trace_of
+
+        client = self.client
+        return client.gather([client.submit(trace_of, trial, pure=False, retries=1) for trial in trials])
+
+
+def cores() -> int:
+    """How many cores this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 @contextlib.contextmanager
@@ -92,11 +106,6 @@ def _quiet() -> None:
         one.setLevel(logging.CRITICAL)
 
 
-def cores() -> int:
-    """How many cores this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-
-
 @contextlib.contextmanager
 def _cluster_of_our_own(workers: int) -> Generator[Any]:
     import dask.config
@@ -116,29 +125,6 @@ def _cluster_of_our_own(workers: int) -> Generator[Any]:
         finally:
             with contextlib.suppress(TimeoutError, OSError):
                 cluster.close(timeout=END_S)
-
-
-def _begun(workers: int) -> Any:
-    """A cluster with all its workers. If one dies before it has begun, which nobody starts again, all are begun anew."""
-    from distributed import LocalCluster
-
-    # Whoever reaches a scheduler has it run what they like. Keys of this run alone, in memory, keep other users out.
-    security: Any = import_module("distributed.security")  # it has no types
-    keys = security.Security.temporary()
-    for more in range(BEGIN_TRIES - 1, -1, -1):
-        try:
-            return LocalCluster(
-                n_workers=workers, threads_per_worker=1, processes=True, host=HERE, memory_limit=0,
-                dashboard_address=f"{HERE}:0", scheduler_kwargs={"dashboard": False}, silence_logs=logging.CRITICAL,
-                preload=["ratslam_live", "app.experiments.workers"], security=keys,
-            )  # fmt: skip
-        except RuntimeError as error:
-            if not more:
-                raise ValueError(
-                    f"{workers} workers cannot begin: {BEGIN_TRIES} times one of them died at once ({error}); with too little "
-                    "memory for so many, try fewer (--workers 1)"
-                ) from None
-    raise AssertionError("unreachable")
 
 
 def _fork_ready_workers() -> None:
@@ -171,6 +157,29 @@ def _environment(**values: str) -> Generator[None]:
                 del os.environ[name]
             else:
                 os.environ[name] = value
+
+
+def _begun(workers: int) -> Any:
+    """A cluster with all its workers. If one dies before it has begun, which nobody starts again, all are begun anew."""
+    from distributed import LocalCluster
+
+    # Whoever reaches a scheduler has it run what they like. Keys of this run alone, in memory, keep other users out.
+    security: Any = import_module("distributed.security")  # it has no types
+    keys = security.Security.temporary()
+    for more in range(BEGIN_TRIES - 1, -1, -1):
+        try:
+            return LocalCluster(
+                n_workers=workers, threads_per_worker=1, processes=True, host=HERE, memory_limit=0,
+                dashboard_address=f"{HERE}:0", scheduler_kwargs={"dashboard": False}, silence_logs=logging.CRITICAL,
+                preload=["ratslam_live", "app.experiments.workers"], security=keys,
+            )  # fmt: skip
+        except RuntimeError as error:
+            if not more:
+                raise ValueError(
+                    f"{workers} workers cannot begin: {BEGIN_TRIES} times one of them died at once ({error}); with too little "
+                    "memory for so many, try fewer (--workers 1)"
+                ) from None
+    raise AssertionError("unreachable")
 
 
 async def _end_workers(nannies: list[Any]) -> None:
@@ -224,35 +233,28 @@ def _check_versions(client: Any, address: str) -> None:
             )
 
 
-class Workers:
-    """Use it in a `with` block. scheduler: the address of a Dask cluster; without one, processes on this machine."""
+def run_stored(trial: Trial) -> Result:
+    """Run a trial to its end. ValueError if it was made by another version of the program than this worker's."""
+    if trial.version != code_version():
+        raise ValueError(f"this worker's program is version {code_version()}, the trial is of {trial.version}")
+    return run_trial(trial)[0]
 
-    def __init__(self, scheduler: str | None, count: int | None, before: Callable[[], None] = lambda: None) -> None:
-        """before: done just before the workers start, such as compiling the kernels, once for all of them."""
-        self._scheduler, self._before = scheduler, before
-        self.count = count or cores()  # as far as is known
-        self._stack = contextlib.ExitStack()
-        self._client: Any = None
 
-    def __enter__(self) -> Workers:
-        return self
+def run_batch(trials: Sequence[Trial], run: RunOne) -> list[Outcome]:
+    """A trial that fails is an outcome, too: the others of its batch go on."""
+    return [_outcome(trial, run) for trial in trials]
 
-    def __exit__(self, *_: object) -> None:
-        self._client = None
-        self._stack.close()
 
-    @property
-    def client(self) -> Any:
-        """The Dask client. ValueError: no cluster answers, or it runs another version of the program."""
-        if self._client is None:
-            self._before()
-            self._client = self._stack.enter_context(connected_to(self._scheduler, self.count))
-            self.count = max(1, sum(self._client.nthreads().values()))
-        return self._client
+def _outcome(trial: Trial, run: RunOne) -> Outcome:
+    try:
+        return Outcome(trial.id, run(trial))
+    except Exception as error:
+        return Outcome(trial.id, error=f"{type(error).__name__}: {error}")
 
-    def traces(self, trials: Sequence[Trial]) -> list[Trace]:
-        """Trials run again and written down, in this order, for the figures."""
-        if not trials:
-            return []
-        client = self.client
-        return client.gather([client.submit(trace_of, trial, pure=False, retries=1) for trial in trials])
+
+def dask_setup(_worker: object) -> None:
+    """Called by Dask in each worker of our own cluster: one core each, and Ctrl+C is the client's matter."""
+    import cv2
+
+    cv2.setNumThreads(1)
+    signal.signal(signal.SIGINT, signal.SIG_IGN)

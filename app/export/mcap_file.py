@@ -1,9 +1,11 @@
 """A run as an MCAP file in the ROS 2 profile, tick by tick. What the brain was given can be read back to the last bit.
 
-Times are simulated ones from 0, so that the same run is the same file. The robot itself is told nothing of /truth.
-
-ROS 2 messages of what a session knows after a tick. Their definitions and their coding come from the library rosbags.
+Times are simulated ones from 0, so that the same run is the same file. The robot itself is told nothing of /truth. The
+messages' definitions and their coding come from the library rosbags.
 """
+
+# The message classes are made when the library is loaded, so their fields have no types.
+# pyright: reportUnknownMemberType=false, reportUnknownVariableType=false, reportUnknownArgumentType=false
 
 from __future__ import annotations
 
@@ -27,107 +29,12 @@ from app.views.event_watch import EventWatch
 from ratslam_core import Pose2
 from sim2d import SONAR_ANGLES_RAD
 
-# The message classes are made when the library is loaded, so their fields have no types.
-# pyright: reportUnknownMemberType=false, reportUnknownVariableType=false, reportUnknownArgumentType=false
-
-
-_STORE = get_typestore(Stores.ROS2_HUMBLE)
-_NO_COVARIANCE = np.zeros(36)
-
-
-def message(name: str, *fields: Any) -> Any:
-    """A message such as "nav_msgs/Path" with its fields in order."""
-    return _STORE.types[_full(name)](*fields)
-
-
-def coded(name: str, content: object) -> bytes:
-    """As CDR, the way ROS 2 sends it."""
-    return bytes(_STORE.serialize_cdr(content, _full(name)))
-
-
-def definition(name: str) -> tuple[str, str]:
-    """The full name of a type and the text of its definition with all those that it is made of."""
-    return _full(name), _STORE.generate_msgdef(_full(name), ros_version=2)[0]
-
-
-def _full(name: str) -> str:
-    return name.replace("/", "/msg/", 1)
-
-
-def header(time_ns: int, frame: str) -> Any:
-    return message("std_msgs/Header", stamp(time_ns), frame)
-
-
-def stamp(time_ns: int) -> Any:
-    return message("builtin_interfaces/Time", *divmod(time_ns, 1_000_000_000))
-
-
-def vector(x: float = 0.0, y: float = 0.0, z: float = 0.0) -> Any:
-    return message("geometry_msgs/Vector3", x, y, z)
-
-
-def point(x: float, y: float) -> Any:
-    return message("geometry_msgs/Point", float(x), float(y), 0.0)
-
-
-def turned(heading_rad: float) -> Any:
-    half = heading_rad / 2
-    return message("geometry_msgs/Quaternion", 0.0, 0.0, math.sin(half), math.cos(half))
-
-
-def pose(at: Pose2) -> Any:
-    return message("geometry_msgs/Pose", point(at.x, at.y), turned(at.heading_rad))
-
-
-def pose_stamped(time_ns: int, frame: str, at: Pose2) -> Any:
-    return message("geometry_msgs/PoseStamped", header(time_ns, frame), pose(at))
-
-
-def transform(time_ns: int, parent: str, child: str, at: Pose2) -> Any:
-    moved = message("geometry_msgs/Transform", vector(at.x, at.y), turned(at.heading_rad))
-    return message("geometry_msgs/TransformStamped", header(time_ns, parent), child, moved)
-
-
-def odometry(time_ns: int, at: Pose2, speed: float, yaw_rate: float) -> Any:
-    """speed, yaw_rate: as the robot is told, to the last bit; the pose is what they add up to."""
-    twist = message("geometry_msgs/Twist", vector(speed), vector(z=yaw_rate))
-    return message(
-        "nav_msgs/Odometry", header(time_ns, "odom"), "base_link",
-        message("geometry_msgs/PoseWithCovariance", pose(at), _NO_COVARIANCE),
-        message("geometry_msgs/TwistWithCovariance", twist, _NO_COVARIANCE),
-    )  # fmt: skip
-
-
-def scan(time_ns: int, first_rad: float, step_rad: float, dt: float, most_m: float, ranges: NDArray[np.float32]) -> Any:
-    """ranges: counter-clockwise from `first_rad`; NaN where nothing measures."""
-    last_rad = first_rad + step_rad * (len(ranges) - 1)
-    return message(
-        "sensor_msgs/LaserScan", header(time_ns, "base_link"), first_rad, last_rad, step_rad, 0.0, dt, 0.0, most_m,
-        ranges, np.zeros(0, np.float32),
-    )  # fmt: skip
-
-
-def marker(time_ns: int, number: int, kind: int, size_m: float, colour: tuple[float, float, float], ends: Any) -> Any:
-    """Points (n, 2) of the map as one marker. kind: 5 for lines, each from a point to the next, 8 for points."""
-    here = Pose2(0.0, 0.0, 0.0)
-    return message(
-        "visualization_msgs/Marker", header(time_ns, "map"), "experience map", number, kind, 0, pose(here),
-        vector(size_m, size_m, size_m), message("std_msgs/ColorRGBA", *colour, 1.0),
-        message("builtin_interfaces/Duration", 0, 0), False, [point(x, y) for x, y in ends], [], "",
-        message("sensor_msgs/CompressedImage", header(0, ""), "", np.zeros(0, np.uint8)), [], "",
-        "", message("visualization_msgs/MeshFile", "", np.zeros(0, np.uint8)), False,
-    )  # fmt: skip
-
-
-def floats(values: NDArray[np.float32]) -> Any:
-    layout = message("std_msgs/MultiArrayLayout", [], 0)
-    return message("std_msgs/Float64MultiArray", layout, values.astype(np.float64))
-
-
 Pictures: TypeAlias = Literal["png", "jpeg", "none"]
 MAP_EVERY_S = 60.0  # a map is large
-_LINKS, _EXPERIENCES = (5, 0.03, (0.35, 0.38, 0.42)), (8, 0.08, (0.0, 0.45, 0.7))
 SONAR_STEP_RAD = math.radians(20)  # the sonars stand at multiples of it from the rightmost one; some places are empty
+_LINKS, _EXPERIENCES = (5, 0.03, (0.35, 0.38, 0.42)), (8, 0.08, (0.0, 0.45, 0.7))
+_STORE = get_typestore(Stores.ROS2_HUMBLE)
+_NO_COVARIANCE = np.zeros(36)
 
 
 def write_mcap(ticks: Iterator[Session], file: IO[bytes], pictures: Pictures = "png") -> int:
@@ -135,7 +42,7 @@ def write_mcap(ticks: Iterator[Session], file: IO[bytes], pictures: Pictures = "
 
     pictures: "png" loses nothing; with "jpeg" the file is a third as large, but what the robot sees in it is no longer the same.
     """
-    bag, recorder, session, count = _Bag(file), None, None, 0
+    bag, recorder, count = _Bag(file), None, 0
     for session in ticks:
         if recorder is None:
             bag.describe(session)
@@ -173,12 +80,14 @@ class _Bag:
         self._writer.add_metadata("ratslam", said)
 
     def put(self, topic: str, kind: str, content: object, time_ns: int) -> None:
+        """Write a message, coded as CDR, the way ROS 2 sends it."""
+        name = _full(kind)
         if topic not in self._channels:
-            name, text = definition(kind)
             if name not in self._schemas:
+                text = _STORE.generate_msgdef(name, ros_version=2)[0]  # with all the types that it is made of
                 self._schemas[name] = self._writer.register_schema(name, SchemaEncoding.ROS2, text.encode())
             self._channels[topic] = self._writer.register_channel(topic, "cdr", self._schemas[name])
-        self._writer.add_message(self._channels[topic], time_ns, coded(kind, content), time_ns)
+        self._writer.add_message(self._channels[topic], time_ns, bytes(_STORE.serialize_cdr(content, name)), time_ns)
 
     def close(self) -> None:
         self._writer.finish()
@@ -212,18 +121,16 @@ class _Recorder:
         map_, now = self._session.brain.experience_map, self._now
         lines = map_.poses[map_.links.ravel(), :2].tolist()
         marks = (_LINKS, lines), (_EXPERIENCES, map_.poses[:, :2].tolist())
-        markers = [marker(now, i, *look, ends) for i, (look, ends) in enumerate(marks)]
-        self._bag.put("/map", "visualization_msgs/MarkerArray", message("visualization_msgs/MarkerArray", markers), now)
+        markers = [_marker(now, i, *look, ends) for i, (look, ends) in enumerate(marks)]
+        self._put("/map", "visualization_msgs/MarkerArray", markers)
         self._put("/topological_map", "std_msgs/String", topological_map(self._session))
-
-    # ------------------------------------------------------------ inside
 
     @property
     def _now(self) -> int:
         return round(self._session.time_s * 1e9)
 
     def _put(self, topic: str, kind: str, *fields: object) -> None:
-        self._bag.put(topic, kind, message(kind, *fields), self._now)
+        self._bag.put(topic, kind, _message(kind, *fields), self._now)
 
     def _change(self, topic: str, kind: str, value: float) -> None:
         """Only when it is another one: what was said last holds."""
@@ -236,18 +143,15 @@ class _Recorder:
         session, now = self._session, self._now
         frame, told = session.frame, session.odometry
         if self._pictures != "none":
-            packed = message(
-                "sensor_msgs/CompressedImage", header(now, "base_link"), self._pictures,
-                _packed(frame.image, self._pictures),
-            )  # fmt: skip
-            self._bag.put("/camera/image/compressed", "sensor_msgs/CompressedImage", packed, now)
+            picture = _header(now, "base_link"), self._pictures, _packed(frame.image, self._pictures)
+            self._put("/camera/image/compressed", "sensor_msgs/CompressedImage", *picture)
         step, turn = told.speed * told.dt, told.yaw_rate * told.dt
         if not self._first:
             driven = Pose2(step * math.cos(turn / 2), step * math.sin(turn / 2), turn)
             self._odometry = self._odometry.compose(driven)
-        self._bag.put("/odom", "nav_msgs/Odometry", odometry(now, self._odometry, told.speed, told.yaw_rate), now)
+        self._bag.put("/odom", "nav_msgs/Odometry", _moved(now, self._odometry, told.speed, told.yaw_rate), now)
         self._bag.put("/scan", "sensor_msgs/LaserScan", self._scan(), now)
-        self._bag.put("/sonars", "std_msgs/Float64MultiArray", floats(frame.ranges_m), now)
+        self._bag.put("/sonars", "std_msgs/Float64MultiArray", _floats(frame.ranges_m), now)
         self._change("/dt", "std_msgs/Float64", told.dt)
         self._change("/behaviour", "std_msgs/UInt8", session.pilot.behaviour.number)
         if session.brain.params.local_view.front_end == "scene numbers":
@@ -261,12 +165,12 @@ class _Recorder:
             n = len(frame.laser_m)
             step = fan / n if fan > math.tau - 1e-9 else fan / max(n - 1, 1)  # round about, both ends would be one beam
             first = fan / 2 - step * (n - 1)
-            return scan(self._now, first, step, frame.dt, robot.laser_range_m, frame.laser_m[::-1].copy())
+            return _beams(self._now, first, step, frame.dt, robot.laser_range_m, frame.laser_m[::-1].copy())
         first = SONAR_ANGLES_RAD[-1]
         places = [round((angle - first) / SONAR_STEP_RAD) for angle in SONAR_ANGLES_RAD]
         beams = np.full(max(places) + 1, np.nan, np.float32)
         beams[places] = frame.ranges_m
-        return scan(self._now, first, SONAR_STEP_RAD, frame.dt, robot.sonar_range_m, beams)
+        return _beams(self._now, first, SONAR_STEP_RAD, frame.dt, robot.sonar_range_m, beams)
 
     def _poses(self) -> None:
         """The robot as it truly is and as it believes to be, each in a frame of its own."""
@@ -274,11 +178,9 @@ class _Recorder:
         believed = session.estimate.pose_map_robot
         true = Pose2(truth.x, truth.y, truth.heading_rad)
         for topic, frame, pose in (("/truth", "office", true), ("/estimate", "map", believed)):
-            self._bag.put(topic, "geometry_msgs/PoseStamped", pose_stamped(now, frame, pose), now)
+            self._bag.put(topic, "geometry_msgs/PoseStamped", _pose_stamped(now, frame, pose), now)
         drift = believed.compose(self._odometry.inverse())
-        tree = [
-            transform(now, "map", "odom", drift), transform(now, "odom", "base_link", self._odometry)
-        ]  # fmt: skip
+        tree = [_transform(now, "map", "odom", drift), _transform(now, "odom", "base_link", self._odometry)]
         self._put("/tf", "tf2_msgs/TFMessage", tree)
 
     def _happenings(self) -> None:
@@ -326,3 +228,84 @@ def _packed(image: NDArray[np.uint8], pictures: str) -> NDArray[np.uint8]:
     if not done:
         raise ValueError(f"a picture of shape {image.shape} cannot be packed as {pictures}")
     return data.ravel()
+
+
+def _message(name: str, *fields: Any) -> Any:
+    """A message such as "nav_msgs/Path" with its fields in order."""
+    return _STORE.types[_full(name)](*fields)
+
+
+def _full(name: str) -> str:
+    return name.replace("/", "/msg/", 1)
+
+
+def _header(time_ns: int, frame: str) -> Any:
+    return _message("std_msgs/Header", _stamp(time_ns), frame)
+
+
+def _stamp(time_ns: int) -> Any:
+    return _message("builtin_interfaces/Time", *divmod(time_ns, 1_000_000_000))
+
+
+def _vector(x: float = 0.0, y: float = 0.0, z: float = 0.0) -> Any:
+    return _message("geometry_msgs/Vector3", x, y, z)
+
+
+def _point(x: float, y: float) -> Any:
+    return _message("geometry_msgs/Point", float(x), float(y), 0.0)
+
+
+def _turned(heading_rad: float) -> Any:
+    half = heading_rad / 2
+    return _message("geometry_msgs/Quaternion", 0.0, 0.0, math.sin(half), math.cos(half))
+
+
+def _pose(at: Pose2) -> Any:
+    return _message("geometry_msgs/Pose", _point(at.x, at.y), _turned(at.heading_rad))
+
+
+def _pose_stamped(time_ns: int, frame: str, at: Pose2) -> Any:
+    return _message("geometry_msgs/PoseStamped", _header(time_ns, frame), _pose(at))
+
+
+def _transform(time_ns: int, parent: str, child: str, at: Pose2) -> Any:
+    moved = _message("geometry_msgs/Transform", _vector(at.x, at.y), _turned(at.heading_rad))
+    return _message("geometry_msgs/TransformStamped", _header(time_ns, parent), child, moved)
+
+
+def _moved(time_ns: int, at: Pose2, speed: float, yaw_rate: float) -> Any:
+    """speed, yaw_rate: as the robot is told, to the last bit; the pose is what they add up to."""
+    twist = _message("geometry_msgs/Twist", _vector(speed), _vector(z=yaw_rate))
+    return _message(
+        "nav_msgs/Odometry", _header(time_ns, "odom"), "base_link",
+        _message("geometry_msgs/PoseWithCovariance", _pose(at), _NO_COVARIANCE),
+        _message("geometry_msgs/TwistWithCovariance", twist, _NO_COVARIANCE),
+    )  # fmt: skip
+
+
+def _beams(
+    time_ns: int, first_rad: float, step_rad: float, dt: float, most_m: float, ranges: NDArray[np.float32]
+) -> Any:
+    """ranges: counter-clockwise from `first_rad`; NaN where nothing measures."""
+    last_rad = first_rad + step_rad * (len(ranges) - 1)
+    return _message(
+        "sensor_msgs/LaserScan", _header(time_ns, "base_link"), first_rad, last_rad, step_rad, 0.0, dt, 0.0, most_m,
+        ranges, np.zeros(0, np.float32),
+    )  # fmt: skip
+
+
+def _marker(time_ns: int, number: int, kind: int, size_m: float, colour: tuple[float, float, float], ends: Any) -> Any:
+    """Points (n, 2) of the map as one marker. kind: 5 for lines, each from a point to the next, 8 for points."""
+    here = Pose2(0.0, 0.0, 0.0)
+    return _message(
+        "visualization_msgs/Marker", _header(time_ns, "map"), "experience map", number, kind, 0, _pose(here),
+        _vector(size_m, size_m, size_m), _message("std_msgs/ColorRGBA", *colour, 1.0),
+        _message("builtin_interfaces/Duration", 0, 0), False, [_point(x, y) for x, y in ends], [], "",
+        _message("sensor_msgs/CompressedImage", _header(0, ""), "", np.zeros(0, np.uint8)), [], "",
+        "", _message("visualization_msgs/MeshFile", "", np.zeros(0, np.uint8)), False,
+    )  # fmt: skip
+
+
+def _floats(values: NDArray[np.float32]) -> Any:
+    layout = _message("std_msgs/MultiArrayLayout", [], 0)
+    return _message("std_msgs/Float64MultiArray", layout, values.astype(np.float64))

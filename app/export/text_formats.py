@@ -1,11 +1,4 @@
-"""A run as a table, a row for each tick: what was true, what the robot was told, what it believed.
-
-Paths in the format of the TUM benchmark: a line "timestamp x y z qx qy qz qw" for each tick, as evo reads it.
-
-The experience map as a pose graph in the format g2o: VERTEX_SE2 for experiences, EDGE_SE2 for what holds them together.
-
-The experience map as GraphML, which networkx, Gephi and yEd read: experiences, ways between them, and how long they take.
-"""
+"""A run, or its experience map, as text that other programs read: CSV, TUM, g2o, GraphML."""
 
 from __future__ import annotations
 
@@ -23,19 +16,22 @@ from app.export.played import name_of
 from app.session import Session
 from ratslam_core import Pose2
 
+_Array = NDArray[np.float64]
 COLUMNS = (
     "tick", "time_s", "dt_s", "true_x", "true_y", "true_heading_rad", "speed", "yaw_rate", "odometry_x", "odometry_y",
     "odometry_heading_rad", "x", "y", "heading_rad", "experience", "created", "view", "recruited", "cell_x", "cell_y",
     "cell_heading_rad", "cell_mass", "snapped", "lost", "off_m", "off_rad", "mode", "behaviour", "bumped",
 )  # fmt: skip
+_NODE = {"x": "double", "y": "double", "heading_rad": "double", "view": "long", "island": "long"}
+_EDGE = {"time_s": "double", "distance_m": "double", "behaviour": "long", "passages": "long", "confidence": "double"}
 
 
 def write_csv(ticks: Iterator[Session], file: IO[bytes]) -> int:
-    """Write the table with a line of headings; returns the number of rows.
+    """Write a run as a table, a row for each tick below a line of headings; returns the number of rows.
 
-    speed (m/s) and yaw_rate (rad/s) are what the robot was told, with errors; x, y, heading_rad what it believed, in the map's
-    frame; off_m and off_rad how far it was from there, as app/evaluation judges it, empty where that has no meaning. What a
-    recording does not have is empty.
+    true_* is what was true; speed (m/s) and yaw_rate (rad/s) are what the robot was told, with errors; x, y, heading_rad what
+    it believed, in the map's frame; off_m and off_rad how far it was from there, as app/evaluation judges it, empty where that
+    has no meaning. What a recording does not have is empty.
     """
     text = io.TextIOWrapper(file, encoding="utf-8", newline="", write_through=True)
     table = csv.writer(text, lineterminator="\n")
@@ -69,13 +65,11 @@ def _row(session: Session, odometry: Pose2) -> tuple[object, ...]:
     )  # fmt: skip
 
 
-_Array = NDArray[np.float64]
-
-
 def tum_files(ticks: Iterator[Session]) -> dict[str, bytes]:
-    """Three paths: the truth (office frame), the estimate as the map tells it at the end, and what was believed at the time.
+    """Three paths in the format of the TUM benchmark: a line "timestamp x y z qx qy qz qw" for each tick, as evo reads it.
 
-    The second is the path that SLAM programs are compared by: corrections of the map have moved what came before. The first is
+    They are the truth (office frame), the estimate as the map tells it at the end, and what was believed at the time. The
+    second is the path that SLAM programs are compared by: corrections of the map have moved what came before. The first is
     absent where a recording has no truth.
     """
     time_s: list[float] = []
@@ -121,10 +115,11 @@ def _tum(time_s: list[float], poses: _Array) -> bytes:
 
 
 def g2o_text(session: Session) -> bytes:
-    """Numbers are exact: read back, they are the map's own.
+    """The experience map as a pose graph in the format g2o: VERTEX_SE2 for experiences, EDGE_SE2 for what holds them together.
 
-    An edge is a row of the transitions that map correction uses; its information is `believed` in all three directions, as
-    correction weighs it (1 for the odometry of one step). A way that no longer counts in correction is left out.
+    Numbers are exact: read back, they are the map's own. An edge is a row of the transitions that map correction uses; its
+    information is `believed` in all three directions, as correction weighs it (1 for the odometry of one step). A way that no
+    longer counts in correction is left out.
     """
     map_ = session.brain.experience_map
     rows = map_.transitions
@@ -135,12 +130,11 @@ def g2o_text(session: Session) -> bytes:
     return "".join(lines).encode()
 
 
-_NODE = {"x": "double", "y": "double", "heading_rad": "double", "view": "long", "island": "long"}
-_EDGE = {"time_s": "double", "distance_m": "double", "behaviour": "long", "passages": "long", "confidence": "double"}
-
-
 def graphml_text(session: Session) -> bytes:
-    """A directed graph. Lengths in m; numbers are exact."""
+    """The experience map as GraphML, which networkx, Gephi and yEd read: experiences, ways between them, how long they take.
+
+    A directed graph. Lengths in m; numbers are exact.
+    """
     map_ = session.brain.experience_map
     root = Tree.Element("graphml", xmlns="http://graphml.graphdrawing.org/xmlns")
     for kind, columns in (("node", _NODE), ("edge", _EDGE)):

@@ -1,8 +1,7 @@
 """The gallery: the catalogue's experiments, with figures and trials from the user's folder where there are some.
 
-The plan of an experiment's world, with the way that its protocol drives: what stands for a figure that is not there.
-
-The grid of an experiment: its first score in each cell, and the trials behind it.
+Of each the grid, its first score in each cell with the trials behind it, and the plan of its world, which stands for a figure
+that is not there.
 """
 
 from __future__ import annotations
@@ -24,128 +23,15 @@ from sim2d import World
 from sim2d.importers import open_world
 from web.http.experiments import Axis, Card, Cell, Detail, Dot, Plan, Results
 
-MARGIN_M = 0.3
-
-
-def plan_of(experiment: Experiment, world: World) -> Plan:
-    ends = [(wall.x1, wall.y1, wall.x2, wall.y2) for wall in world.walls]
-    xs = [x for x1, _, x2, _ in ends for x in (x1, x2)]
-    ys = [y for _, y1, _, y2 in ends for y in (y1, y2)]
-    left, bottom = min(xs) - MARGIN_M, min(ys) - MARGIN_M
-    steps = list(_flat(experiment.protocol))
-    drives = [[place_of(world, where) for where in step.path] for step in steps if isinstance(step, Drive)]
-    tagged = [place_of(world, name) for step in steps if isinstance(step, Tag) for name in step.places]
-    return Plan(
-        width=round(max(xs) + MARGIN_M - left, 2),
-        depth=round(max(ys) + MARGIN_M - bottom, 2),
-        left=round(left, 2),
-        bottom=round(bottom, 2),
-        walls="".join(f"M{x1:.2f} {y1:.2f}L{x2:.2f} {y2:.2f}" for x1, y1, x2, y2 in ends),
-        way="".join(map(_line, drives)),
-        places=tagged,
-    )
-
-
-def _flat(steps: Sequence[Step]) -> Iterable[Step]:
-    for step in steps:
-        if isinstance(step, Repeat):
-            yield from _flat(step.steps)
-        else:
-            yield step
-
-
-def _line(points: list[tuple[float, float]]) -> str:
-    return "M" + "L".join(f"{x:.2f} {y:.2f}" for x, y in points)
-
+PICTURES = Path(__file__).parents[2] / "docs" / "pictures" / "experiments"  # those that come with the program
+FIGURES = "figures"  # the folder beside the store for those that are drawn here
 
 EARLIER = "These trials were run by an earlier version of the program: played today, they may go otherwise."
 PUBLISHED = "These are the program's own results, as in docs/results.md; none of these trials was run here yet."
 QUICK = "These are short trials, run to see that the experiment works; they say little."
-
-
-def results_of(experiment: Experiment, stored: Sequence[StoredTrial], published: Sequence[CellSummary] = ()) -> Results:
-    """stored: all trials of the experiment, the oldest first. Those shown are of one kind, the best there is.
-
-    published: what stands in docs/results.md, for want of trials.
-    """
-    trials, note = _chosen([trial for trial in stored if not trial.error])
-    cells = summarise(experiment, trials) if trials else published
-    if not trials and published:
-        note = PUBLISHED
-    score = next((score for score in experiment.scores if score.rate is not None), experiment.scores[0])
-    found = {(cell.engine, cell.levels): cell for cell in cells if score.label in cell.values}
-    values = [cell.values[score.label].value for cell in found.values()]
-    finite = [value for value in values if math.isfinite(value)]
-    span = (0.0, 1.0) if score.rate is not None else (min(finite, default=0.0), max(finite, default=1.0))
-    return Results(
-        score=score.label,
-        is_rate=score.rate is not None,
-        note=note,
-        cells=[
-            _cell(score, engine, levels, found.get((engine, levels)), span, _of(trials, engine, levels))
-            for engine in experiment.engines
-            for levels in _cells(experiment)
-        ],
-    )
-
-
-def _chosen(trials: list[StoredTrial]) -> tuple[list[StoredTrial], str]:
-    whole = [trial for trial in trials if not trial.quick]
-    current = [trial for trial in whole if trial.version == code_version()]
-    if current or not trials:
-        return current, ""
-    return _newest(whole or trials), EARLIER if whole else QUICK
-
-
-def _newest(trials: list[StoredTrial]) -> list[StoredTrial]:
-    """One of each cell and seed, the one that was run last."""
-    return list({(trial.engine, trial.levels, trial.seed): trial for trial in trials}.values())
-
-
-def _cells(experiment: Experiment) -> list[tuple[str, ...]]:
-    return [tuple(level.label for level in cell) for cell in experiment.cells()]
-
-
-def _of(trials: list[StoredTrial], engine: str, cell: tuple[str, ...]) -> list[StoredTrial]:
-    mine = [trial for trial in trials if trial.engine == engine and trial.levels == cell]
-    return sorted(mine, key=lambda trial: (trial.seed, trial.id))
-
-
-def _share(value: float, low: float, high: float) -> float | None:
-    if not math.isfinite(value):
-        return None
-    return 0.5 if high <= low else (value - low) / (high - low)
-
-
-def _cell(
-    score: Score, engine: EngineName, levels: tuple[str, ...], summary: CellSummary | None, span: tuple[float, float],
-    trials: list[StoredTrial],
-) -> Cell:  # fmt: skip
-    dots = [_dot(score, trial) for trial in trials]
-    if summary is None or summary.n == 0:
-        return Cell(engine=engine, levels=list(levels), n=0, words="", shade=None, dots=dots)
-    value = summary.values[score.label]
-    shade = _share(value.value, *span)
-    return Cell(engine=engine, levels=list(levels), n=summary.n, words=words(value, score), shade=shade, dots=dots)
-
-
-def _dot(score: Score, trial: StoredTrial) -> Dot:
-    good = of = None
-    if score.rate is None:
-        value = trial.scores.get(str(score.score))
-        said = "not measured" if value is None else f"{value:.3g} {score.unit}".rstrip()
-    else:
-        good, of = (round(trial.scores.get(name, 0.0)) for name in score.rate)
-        said = f"{good} of {of}"
-    return Dot(
-        id=trial.id, seed=trial.seed, quick=trial.quick, good=good, of=of, words=said, moment_s=trial.moment_s,
-        moment=trial.moment_words,
-    )  # fmt: skip
-
+MARGIN_M = 0.3  # of a plan, round the walls
 
 _T = TypeVar("_T")
-PICTURES = Path(__file__).parents[2] / "docs" / "pictures" / "experiments"  # those that come with the program
-FIGURES = "figures"  # the folder beside the store for those that are drawn here
 
 
 class StoredGallery:
@@ -171,7 +57,7 @@ class StoredGallery:
         except ValueError as error:
             trials, why = [], str(error)
         done = sum(not trial.error for trial in trials)
-        results = results_of(experiment, trials, _published(name))
+        results = _results_of(experiment, trials, _published(name))
         if why:
             results.note = f"The trials that were run here cannot be shown: {why}. {results.note}".strip()
         return Detail(card=self._card(experiment, done), results=results)
@@ -226,7 +112,7 @@ class StoredGallery:
             seconds=experiment.seconds(),
             done=done,
             picture=None if picture is None else f"/api/experiments/{experiment.name}/picture",
-            plan=plan_of(experiment, world),
+            plan=_plan_of(experiment, world),
         )
 
 
@@ -243,3 +129,103 @@ def _published(name: str) -> list[CellSummary]:
 @lru_cache
 def _world(name: str) -> World:
     return open_world(name)
+
+
+def _results_of(experiment: Experiment, stored: Sequence[StoredTrial], published: Sequence[CellSummary]) -> Results:
+    """The grid of an experiment. stored: all its trials, the oldest first. Those shown are of one kind, the best there is.
+
+    published: what stands in docs/results.md, for want of trials.
+    """
+    trials, note = _chosen([trial for trial in stored if not trial.error])
+    cells = summarise(experiment, trials) if trials else published
+    if not trials and published:
+        note = PUBLISHED
+    score = next((score for score in experiment.scores if score.rate is not None), experiment.scores[0])
+    found = {(cell.engine, cell.levels): cell for cell in cells if score.label in cell.values}
+    values = [cell.values[score.label].value for cell in found.values()]
+    finite = [value for value in values if math.isfinite(value)]
+    span = (0.0, 1.0) if score.rate is not None else (min(finite, default=0.0), max(finite, default=1.0))
+    return Results(
+        score=score.label,
+        is_rate=score.rate is not None,
+        note=note,
+        cells=[
+            _cell(score, engine, levels, found.get((engine, levels)), span, _of(trials, engine, levels))
+            for engine in experiment.engines
+            for levels in (tuple(level.label for level in cell) for cell in experiment.cells())
+        ],
+    )
+
+
+def _chosen(trials: list[StoredTrial]) -> tuple[list[StoredTrial], str]:
+    whole = [trial for trial in trials if not trial.quick]
+    current = [trial for trial in whole if trial.version == code_version()]
+    if current or not trials:
+        return current, ""
+    newest = {(trial.engine, trial.levels, trial.seed): trial for trial in whole or trials}  # of each cell and seed
+    return list(newest.values()), EARLIER if whole else QUICK
+
+
+def _of(trials: list[StoredTrial], engine: str, cell: tuple[str, ...]) -> list[StoredTrial]:
+    mine = [trial for trial in trials if trial.engine == engine and trial.levels == cell]
+    return sorted(mine, key=lambda trial: (trial.seed, trial.id))
+
+
+def _cell(
+    score: Score, engine: EngineName, levels: tuple[str, ...], summary: CellSummary | None, span: tuple[float, float],
+    trials: list[StoredTrial],
+) -> Cell:  # fmt: skip
+    dots = [_dot(score, trial) for trial in trials]
+    if summary is None or summary.n == 0:
+        return Cell(engine=engine, levels=list(levels), n=0, words="", shade=None, dots=dots)
+    value = summary.values[score.label]
+    shade = _share(value.value, *span)
+    return Cell(engine=engine, levels=list(levels), n=summary.n, words=words(value, score), shade=shade, dots=dots)
+
+
+def _share(value: float, low: float, high: float) -> float | None:
+    if not math.isfinite(value):
+        return None
+    return 0.5 if high <= low else (value - low) / (high - low)
+
+
+def _dot(score: Score, trial: StoredTrial) -> Dot:
+    good = of = None
+    if score.rate is None:
+        value = trial.scores.get(str(score.score))
+        said = "not measured" if value is None else f"{value:.3g} {score.unit}".rstrip()
+    else:
+        good, of = (round(trial.scores.get(name, 0.0)) for name in score.rate)
+        said = f"{good} of {of}"
+    return Dot(
+        id=trial.id, seed=trial.seed, quick=trial.quick, good=good, of=of, words=said, moment_s=trial.moment_s,
+        moment=trial.moment_words,
+    )  # fmt: skip
+
+
+def _plan_of(experiment: Experiment, world: World) -> Plan:
+    """The plan of an experiment's world, with the way that its protocol drives."""
+    ends = [(wall.x1, wall.y1, wall.x2, wall.y2) for wall in world.walls]
+    xs = [x for x1, _, x2, _ in ends for x in (x1, x2)]
+    ys = [y for _, y1, _, y2 in ends for y in (y1, y2)]
+    left, bottom = min(xs) - MARGIN_M, min(ys) - MARGIN_M
+    steps = list(_flat(experiment.protocol))
+    drives = [[place_of(world, where) for where in step.path] for step in steps if isinstance(step, Drive)]
+    tagged = [place_of(world, name) for step in steps if isinstance(step, Tag) for name in step.places]
+    return Plan(
+        width=round(max(xs) + MARGIN_M - left, 2),
+        depth=round(max(ys) + MARGIN_M - bottom, 2),
+        left=round(left, 2),
+        bottom=round(bottom, 2),
+        walls="".join(f"M{x1:.2f} {y1:.2f}L{x2:.2f} {y2:.2f}" for x1, y1, x2, y2 in ends),
+        way="".join("M" + "L".join(f"{x:.2f} {y:.2f}" for x, y in points) for points in drives),
+        places=tagged,
+    )
+
+
+def _flat(steps: Sequence[Step]) -> Iterable[Step]:
+    for step in steps:
+        if isinstance(step, Repeat):
+            yield from _flat(step.steps)
+        else:
+            yield step

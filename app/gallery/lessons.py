@@ -1,7 +1,4 @@
-"""The lessons as the page is told of them: those of the program and the user's own.
-
-Formulas typeset: LaTeX to MathML, each symbol that is a parameter marked by its name.
-"""
+"""The lessons as the page is told of them: those of the program and the user's own, with their formulas typeset."""
 
 from __future__ import annotations
 
@@ -19,60 +16,6 @@ from sim2d.importers import open_world
 from web.http.lessons import FormulaText, LessonCard, LessonText, LookText, Question, SymbolText, TryText
 
 MATHML = "http://www.w3.org/1998/Math/MathML"
-
-
-def formula_text(formula: Formula, values: Mapping[str, str]) -> FormulaText:
-    """values: of the parameters, by dotted name. ValueError: it is no LaTeX."""
-    tree = _tree(formula.latex, block=True)
-    for symbol in formula.symbols:
-        if symbol.parameter is not None:
-            _mark(tree, _content(symbol.symbol), symbol.parameter)
-    symbols = [
-        SymbolText(
-            mathml=_text(_tree(symbol.symbol)), means=symbol.means, parameter=symbol.parameter,
-            value=None if symbol.parameter is None else values[symbol.parameter],
-        )
-        for symbol in formula.symbols
-    ]  # fmt: skip
-    return FormulaText(
-        mathml=_text(tree), latex=formula.latex, says=formula.says, source=formula.source, symbols=symbols
-    )
-
-
-def _tree(latex: str, block: bool = False) -> ElementTree.Element:
-    ElementTree.register_namespace("", MATHML)
-    try:
-        tree = ElementTree.fromstring(convert(latex, display="block" if block else "inline"))
-    except Exception as error:  # whatever the converter raises
-        raise ValueError(f"{latex!r} cannot be typeset: {type(error).__name__} {error}") from None
-    unknown = next((text for each in tree.iter() if (text := each.text or "").startswith("\\")), None)
-    if unknown is not None:
-        raise ValueError(f"{latex!r} cannot be typeset: {unknown} is unknown")
-    return tree
-
-
-def _content(latex: str) -> list[str]:
-    """The symbol's own elements as texts, without those around it."""
-    inner = list(_tree(latex))
-    while len(inner) == 1 and inner[0].tag.endswith("mrow"):
-        inner = list(inner[0])
-    return [_text(each) for each in inner]
-
-
-def _mark(tree: ElementTree.Element, wanted: list[str], parameter: str) -> None:
-    """Mark every element that looks like the symbol; of a symbol of several elements, the first."""
-    for element in tree.iter():
-        children = list(element)
-        for k in range(len(children) - len(wanted) + 1):
-            if [_text(each) for each in children[k : k + len(wanted)]] == wanted:
-                children[k].set("data-parameter", parameter)
-
-
-def _text(element: ElementTree.Element) -> str:
-    tail, element.tail = element.tail, None
-    text = ElementTree.tostring(element, encoding="unicode")
-    element.tail = tail
-    return text
 
 
 class StoredLessons:
@@ -126,6 +69,13 @@ class StoredLessons:
         )
 
 
+def _card(number: int, lesson: Lesson, own: bool) -> LessonCard:
+    return LessonCard(
+        name=lesson.name, number=number, title=lesson.title, idea=lesson.idea, paper=lesson.paper,
+        minutes=max(0.1, round(shown_s(lesson) / 60, 1)), rounds=lesson.round_count, own=own, wrong=None,
+    )  # fmt: skip
+
+
 def _typeset(formula: Formula, values: dict[str, str]) -> FormulaText:
     """One that cannot be typeset is shown as it was written."""
     try:
@@ -142,8 +92,58 @@ def check_formulas(lesson: Lesson) -> None:
         formula_text(formula, values)
 
 
-def _card(number: int, lesson: Lesson, own: bool) -> LessonCard:
-    return LessonCard(
-        name=lesson.name, number=number, title=lesson.title, idea=lesson.idea, paper=lesson.paper,
-        minutes=max(0.1, round(shown_s(lesson) / 60, 1)), rounds=lesson.round_count, own=own, wrong=None,
-    )  # fmt: skip
+def formula_text(formula: Formula, values: Mapping[str, str]) -> FormulaText:
+    """A formula as MathML, each symbol that is a parameter marked by its name.
+
+    values: of the parameters, by dotted name. ValueError: it is no LaTeX.
+    """
+    tree = _tree(formula.latex, block=True)
+    for symbol in formula.symbols:
+        if symbol.parameter is not None:
+            _mark(tree, _content(symbol.symbol), symbol.parameter)
+    symbols = [
+        SymbolText(
+            mathml=_text(_tree(symbol.symbol)), means=symbol.means, parameter=symbol.parameter,
+            value=None if symbol.parameter is None else values[symbol.parameter],
+        )
+        for symbol in formula.symbols
+    ]  # fmt: skip
+    return FormulaText(
+        mathml=_text(tree), latex=formula.latex, says=formula.says, source=formula.source, symbols=symbols
+    )
+
+
+def _tree(latex: str, block: bool = False) -> ElementTree.Element:
+    ElementTree.register_namespace("", MATHML)
+    try:
+        tree = ElementTree.fromstring(convert(latex, display="block" if block else "inline"))
+    except Exception as error:  # whatever the converter raises
+        raise ValueError(f"{latex!r} cannot be typeset: {type(error).__name__} {error}") from None
+    unknown = next((text for each in tree.iter() if (text := each.text or "").startswith("\\")), None)
+    if unknown is not None:
+        raise ValueError(f"{latex!r} cannot be typeset: {unknown} is unknown")
+    return tree
+
+
+def _content(latex: str) -> list[str]:
+    """The symbol's own elements as texts, without those around it."""
+    inner = list(_tree(latex))
+    while len(inner) == 1 and inner[0].tag.endswith("mrow"):
+        inner = list(inner[0])
+    return [_text(each) for each in inner]
+
+
+def _mark(tree: ElementTree.Element, wanted: list[str], parameter: str) -> None:
+    """Mark every element that looks like the symbol; of a symbol of several elements, the first."""
+    for element in tree.iter():
+        children = list(element)
+        for k in range(len(children) - len(wanted) + 1):
+            if [_text(each) for each in children[k : k + len(wanted)]] == wanted:
+                children[k].set("data-parameter", parameter)
+
+
+def _text(element: ElementTree.Element) -> str:
+    tail, element.tail = element.tail, None
+    text = ElementTree.tostring(element, encoding="unicode")
+    element.tail = tail
+    return text

@@ -1,11 +1,7 @@
 """Local movement: of the arcs that are free, the robot takes the one that ends closest to its target. ACRA 2006 4.3.
 
 Obstacles are the sonar echoes of the last seconds, moved along by odometry. An obstacle that slips between two cones is
-thus not forgotten.
-
-The local movements among which the robot chose: every arc that it tried, which were free, and what each would cost.
-
-ACRA 2006 4.3, figure 4. For people who look; the robot itself needs only the best (`LocalMovement.towards`).
+thus not forgotten. For people who look, all arcs can be told (`candidates`, figure 4); the robot needs only the best.
 """
 
 from __future__ import annotations
@@ -122,13 +118,7 @@ class LocalMovement:
 
 @njit(cache=True, nogil=True)
 def _sense(
-    echoes: _Array,
-    step: float,
-    turn: float,
-    start: int,
-    ranges: NDArray[np.float32],
-    angles: _Array,
-    farthest: float,
+    echoes: _Array, step: float, turn: float, start: int, ranges: NDArray[np.float32], angles: _Array, farthest: float
 ) -> None:
     _carry(echoes, step, turn)
     _place(echoes, start, ranges, angles, farthest)
@@ -156,94 +146,6 @@ def _place(echoes: _Array, start: int, ranges: NDArray[np.float32], angles: _Arr
 
 
 @njit(cache=True, nogil=True)
-def _best_arc(echoes: _Array, x: float, y: float, p: Choice) -> tuple[float, float]:
-    """Speed and yaw rate of the cheapest arc that keeps clear of all echoes; a turn on the spot is always clear."""
-    best, best_v, best_w = np.inf, 0.0, 0.0
-    near = within(echoes, p.speed * p.arc_s + p.clearance + 2 * p.narrow_m, p)  # generously
-    facing = facing_of(p)
-    for share in (1.0, p.medium, p.slow, 0.0):
-        v = p.speed * share
-        for wi in range(-p.arcs, p.arcs + 1):
-            if v == 0.0 and abs(wi) < p.spot * p.arcs:
-                continue
-            w = p.turn_rate * wi / p.arcs
-            px, py, nearest, free = 0.0, 0.0, np.inf, True
-            if v > 0.0:
-                px, py, nearest, free = along(near, v * (p.arc_s / p.steps), facing[wi + p.arcs], p)
-            if free:
-                cost = cost_of(x, y, px, py, w * (p.arc_s if v > 0.0 else p.spot_s), nearest, p)
-                if cost < best:
-                    best, best_v, best_w = cost, v, w
-    return best_v, best_w
-
-
-@njit(cache=True, nogil=True)
-def along(near: tuple[_Array, _Array], step: float, facing: _Array, p: Choice) -> tuple[float, float, float, bool]:
-    """The end (m) of an arc, the squared distance (m²) of the nearest echo, and whether it keeps clear of all.
-
-    near: from `within`. All echoes are compared at once, without a branch, so that the compiler can vectorise.
-    """
-    px = py = 0.0
-    places, limits = near
-    x, y, limit, least = places[0], places[1], limits[0], limits[1]
-    least[:] = np.inf
-    for k in range(p.steps):
-        px += step * facing[k, 0]
-        py += step * facing[k, 1]
-        too_close = 0
-        for e in range(x.size):
-            ex, ey = x[e] - px, y[e] - py
-            d = ex * ex + ey * ey
-            too_close += (d < p.clearance * p.clearance) & (d < limit[e])
-            least[e] = d if d < least[e] else least[e]
-        if too_close > 0:
-            return px, py, np.inf, False
-    nearest = np.inf
-    for d in least:
-        nearest = min(nearest, d)
-    return px, py, nearest, True
-
-
-@njit(cache=True, nogil=True)
-def cost_of(x: float, y: float, px: float, py: float, heading: float, nearest: float, p: Choice) -> float:
-    """Cost in metres: distance left from the arc's end to (x, y), angle left to turn, and passing close to an echo."""
-    left = math.hypot(x - px, y - py)
-    aim = math.atan2(y - py, x - px) - heading if left > p.bearing_m else math.atan2(y, x) - heading
-    aim = abs(aim - 2 * math.pi * np.round(aim / (2 * math.pi)))
-    close = max(0.0, p.clearance + p.narrow_m - math.sqrt(nearest)) / p.narrow_m
-    return left + p.turn_cost * aim + p.narrow_cost * close
-
-
-@njit(cache=True, nogil=True)
-def facing_of(p: Choice) -> _Array:
-    """Cosine and sine of the heading in the middle of each step of each arc."""
-    out = np.empty((2 * p.arcs + 1, p.steps, 2))
-    for wi in range(-p.arcs, p.arcs + 1):
-        for k in range(p.steps):
-            heading = p.turn_rate * wi / p.arcs * (k + 0.5) * p.arc_s / p.steps
-            out[wi + p.arcs, k, 0], out[wi + p.arcs, k, 1] = math.cos(heading), math.sin(heading)
-    return out
-
-
-@njit(cache=True, nogil=True)
-def within(echoes: _Array, reach: float, p: Choice) -> tuple[_Array, _Array]:
-    """The echoes within `reach`, in their order, (2, n); no other can matter to an arc.
-
-    And in (2, n) how near (m²) an arc must come to count as too close, since an echo that is already too close does not
-    forbid an arc that leads away from it, and a row for `along`.
-    """
-    places, limits = np.empty((2, len(echoes))), np.empty((2, len(echoes)))
-    n = 0
-    for e in range(echoes.shape[0]):
-        away = echoes[e, 0] * echoes[e, 0] + echoes[e, 1] * echoes[e, 1]
-        if away <= reach * reach:
-            places[0, n], places[1, n] = echoes[e, 0], echoes[e, 1]
-            limits[0, n] = away - p.escape_m2
-            n += 1
-    return places[:, :n].copy(), limits[:, :n].copy()  # rows without gaps, or the compiler cannot vectorise
-
-
-@njit(cache=True, nogil=True)
 def _free_way(echoes: _Array, bearing: float, clearance: float, farthest: float) -> float:
     c, s = math.cos(bearing), math.sin(bearing)
     way = farthest
@@ -268,13 +170,33 @@ def _freest(
     return chosen
 
 
+@njit(cache=True, nogil=True)
+def _best_arc(echoes: _Array, x: float, y: float, p: Choice) -> tuple[float, float]:
+    """Speed and yaw rate of the cheapest arc that keeps clear of all echoes; a turn on the spot is always clear."""
+    best, best_v, best_w = np.inf, 0.0, 0.0
+    near = _within(echoes, p.speed * p.arc_s + p.clearance + 2 * p.narrow_m, p)  # generously
+    facing = _facing_of(p)
+    for share in (1.0, p.medium, p.slow, 0.0):
+        v = p.speed * share
+        for wi in range(-p.arcs, p.arcs + 1):
+            if v == 0.0 and abs(wi) < p.spot * p.arcs:
+                continue
+            w = p.turn_rate * wi / p.arcs
+            px, py, nearest, free = 0.0, 0.0, np.inf, True
+            if v > 0.0:
+                px, py, nearest, free = _along(near, v * (p.arc_s / p.steps), facing[wi + p.arcs], p)
+            if free:
+                cost = _cost_of(x, y, px, py, w * (p.arc_s if v > 0.0 else p.spot_s), nearest, p)
+                if cost < best:
+                    best, best_v, best_w = cost, v, w
+    return best_v, best_w
+
+
 @dataclass(frozen=True, slots=True)
 class Candidates:
-    """n arcs in the frame of the robot that tried them, in the order in which it did."""
+    """The n arcs that the robot tried, in its frame and in the order in which it did. ACRA 2006, figure 4."""
 
-    paths: NDArray[
-        np.float64
-    ]  # (n, steps + 1, 2): m, from the robot's middle to where the arc ends; one point if it only turns
+    paths: NDArray[np.float64]  # (n, steps + 1, 2) m, from the robot's middle to the arc's end; a turn stays at a point
     turned_rad: NDArray[np.float64]  # (n,) between beginning and end
     length_m: NDArray[np.float64]  # (n,) of each path
     speed: NDArray[np.float64]  # (n,) m/s; 0 for a turn on the spot
@@ -287,12 +209,12 @@ class Candidates:
         return int(np.argmin(self.cost))
 
 
-def candidates(echoes: NDArray[np.float64], x: float, y: float, p: Choice) -> Candidates:
+def candidates(echoes: _Array, x: float, y: float, p: Choice) -> Candidates:
     """All that `LocalMovement.towards` tries on the way to (x, y), with the same numbers.
 
     echoes: (n, 2) m, robot's frame. test_candidates.py::test_the_cheapest_candidate_is_the_one_that_was_chosen.
     """
-    near, facing = within(echoes, p.speed * p.arc_s + p.clearance + 2 * p.narrow_m, p), facing_of(p)
+    near, facing = _within(echoes, p.speed * p.arc_s + p.clearance + 2 * p.narrow_m, p), _facing_of(p)
     rows: list[tuple[float, float, float, float]] = []
     paths: list[NDArray[np.float64]] = []
     for share in (1.0, p.medium, p.slow, 0.0):
@@ -303,9 +225,75 @@ def candidates(echoes: NDArray[np.float64], x: float, y: float, p: Choice) -> Ca
             w, step = p.turn_rate * wi / p.arcs, v * (p.arc_s / p.steps)
             px, py, nearest, free = 0.0, 0.0, np.inf, True
             if v > 0.0:
-                px, py, nearest, free = along(near, step, facing[wi + p.arcs], p)
+                px, py, nearest, free = _along(near, step, facing[wi + p.arcs], p)
             turned = w * (p.arc_s if v > 0.0 else p.spot_s)
-            rows.append((turned, v, w, cost_of(x, y, px, py, turned, nearest, p) if free else np.inf))
+            rows.append((turned, v, w, _cost_of(x, y, px, py, turned, nearest, p) if free else np.inf))
             paths.append(np.vstack([np.zeros((1, 2)), np.cumsum(step * facing[wi + p.arcs], axis=0)]))
     turned_rad, speed, yaw_rate, cost = np.array(rows).T
     return Candidates(np.array(paths), turned_rad, speed * p.arc_s, speed, yaw_rate, cost)
+
+
+@njit(cache=True, nogil=True)
+def _along(near: tuple[_Array, _Array], step: float, facing: _Array, p: Choice) -> tuple[float, float, float, bool]:
+    """The end (m) of an arc, the squared distance (m²) of the nearest echo, and whether it keeps clear of all.
+
+    near: from `_within`. All echoes are compared at once, without a branch, so that the compiler can vectorise.
+    """
+    px = py = 0.0
+    places, limits = near
+    x, y, limit, least = places[0], places[1], limits[0], limits[1]
+    least[:] = np.inf
+    for k in range(p.steps):
+        px += step * facing[k, 0]
+        py += step * facing[k, 1]
+        too_close = 0
+        for e in range(x.size):
+            ex, ey = x[e] - px, y[e] - py
+            d = ex * ex + ey * ey
+            too_close += (d < p.clearance * p.clearance) & (d < limit[e])
+            least[e] = d if d < least[e] else least[e]
+        if too_close > 0:
+            return px, py, np.inf, False
+    nearest = np.inf
+    for d in least:
+        nearest = min(nearest, d)
+    return px, py, nearest, True
+
+
+@njit(cache=True, nogil=True)
+def _cost_of(x: float, y: float, px: float, py: float, heading: float, nearest: float, p: Choice) -> float:
+    """Cost in metres: distance left from the arc's end to (x, y), angle left to turn, and passing close to an echo."""
+    left = math.hypot(x - px, y - py)
+    aim = math.atan2(y - py, x - px) - heading if left > p.bearing_m else math.atan2(y, x) - heading
+    aim = abs(aim - 2 * math.pi * np.round(aim / (2 * math.pi)))
+    close = max(0.0, p.clearance + p.narrow_m - math.sqrt(nearest)) / p.narrow_m
+    return left + p.turn_cost * aim + p.narrow_cost * close
+
+
+@njit(cache=True, nogil=True)
+def _facing_of(p: Choice) -> _Array:
+    """Cosine and sine of the heading in the middle of each step of each arc."""
+    out = np.empty((2 * p.arcs + 1, p.steps, 2))
+    for wi in range(-p.arcs, p.arcs + 1):
+        for k in range(p.steps):
+            heading = p.turn_rate * wi / p.arcs * (k + 0.5) * p.arc_s / p.steps
+            out[wi + p.arcs, k, 0], out[wi + p.arcs, k, 1] = math.cos(heading), math.sin(heading)
+    return out
+
+
+@njit(cache=True, nogil=True)
+def _within(echoes: _Array, reach: float, p: Choice) -> tuple[_Array, _Array]:
+    """The echoes within `reach`, in their order, (2, n); no other can matter to an arc.
+
+    And in (2, n) how near (m²) an arc must come to count as too close, since an echo that is already too close does
+    not forbid an arc that leads away from it, and a row for `_along` to write in.
+    """
+    places, limits = np.empty((2, len(echoes))), np.empty((2, len(echoes)))
+    n = 0
+    for e in range(echoes.shape[0]):
+        away = echoes[e, 0] * echoes[e, 0] + echoes[e, 1] * echoes[e, 1]
+        if away <= reach * reach:
+            places[0, n], places[1, n] = echoes[e, 0], echoes[e, 1]
+            limits[0, n] = away - p.escape_m2
+            n += 1
+    return places[:, :n].copy(), limits[:, :n].copy()  # rows without gaps, or the compiler cannot vectorise

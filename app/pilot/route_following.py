@@ -1,11 +1,6 @@
 """Following a route to a goal over the experience map. ACRA 2006 section 4.
 
-[ours] Headway: whether the robot gets on along its route, judged by its own odometry.
-
-The time that a link was learnt to take is no measure: floor may be slow, the map may be bent, and the time left jumps
-with each new plan. What counts is by how much the robot itself has come nearer to the points it headed for.
-test_headway.py::{test_slow_is_not_blocked, test_a_robot_that_comes_no_nearer_fails,
-test_turning_towards_the_way_is_headway_but_not_for_ever}.
+[ours] Whether the robot gets on along its route is judged by its own odometry (`Headway`).
 """
 
 from __future__ import annotations
@@ -26,64 +21,6 @@ from disk import kind
 from ratslam_core import ExperienceMap, Odometry, Pose2, Route
 from web.messages import GoalState
 
-
-@kind("headway/1")
-class Headway:
-    """`blocked`: it has come no nearer for `trial_s`. `astray`: it has not left the place for `no_headway_s`."""
-
-    def __init__(self) -> None:
-        self._aim: tuple[float, float] | None = None  # the point headed for, m, robot's frame
-        self._off_x = self._off_y = self._heading = 0.0  # by odometry, since it last left a place
-        self._stays_s = 0.0  # time since then
-        self.begin()
-
-    def begin(self) -> None:
-        """A new trial begins."""
-        self._nearer_m = self._most_m = 0.0  # how much nearer it has come in all, and at most
-        self._least_turn = math.inf  # to the aim, rad
-        self._still_s = 0.0
-
-    def leave(self) -> None:
-        """It goes elsewhere for a while: count its stay from now."""
-        self._stays_s = self._off_x = self._off_y = 0.0
-        self.begin()
-
-    def blocked(self, p: RouteParams) -> bool:
-        return self._still_s > p.trial_s
-
-    def astray(self, p: RouteParams) -> bool:
-        return self._stays_s > p.no_headway_s
-
-    def head_for(self, aim: tuple[float, float] | None) -> None:
-        """aim: the next point (m, robot's frame), None for no route."""
-        self._aim = aim
-
-    def move(self, odometry: Odometry, trying: bool, p: RouteParams) -> None:
-        """The robot moved; called in every tick. trying: whether it drove towards the aim, and did not back out."""
-        step, turn = odometry.speed * odometry.dt, odometry.yaw_rate * odometry.dt
-        middle = self._heading + turn / 2
-        self._heading += turn
-        self._off_x += step * math.cos(middle)
-        self._off_y += step * math.sin(middle)
-        self._stays_s += odometry.dt
-        if math.hypot(self._off_x, self._off_y) > p.place_m:
-            self._stays_s = self._off_x = self._off_y = 0.0
-        if self._aim is None:
-            return
-        x, y = self._aim
-        away = math.hypot(x, y)
-        x, y = x - step * math.cos(turn / 2), y - step * math.sin(turn / 2)
-        c, s = math.cos(turn), math.sin(turn)
-        self._aim = c * x + s * y, -s * x + c * y
-        self._nearer_m += away - math.hypot(x, y)
-        self._still_s += odometry.dt * trying
-        bearing = abs(math.atan2(self._aim[1], self._aim[0]))
-        if self._nearer_m > self._most_m + p.headway_m:
-            self._most_m, self._least_turn, self._still_s = self._nearer_m, bearing, 0.0
-        elif bearing < self._least_turn - p.headway_rad:
-            self._least_turn, self._still_s = bearing, 0.0
-
-
 _Array = NDArray[np.float64]
 
 
@@ -96,7 +33,7 @@ class Progress:
     eta_s: float | None
     remaining_m: float | None
     route: NDArray[np.int64]  # experiences
-    arrival_s: NDArray[np.float64]  # seconds from now
+    arrival_s: _Array  # seconds from now
 
 
 @kind("route follower/3")
@@ -132,8 +69,8 @@ class RouteFollower:
             self._headway.move(odometry, trying, p)
 
     def carried_away(self, experiences: ExperienceMap, dt: float, p: RouteParams) -> bool:
-        """[ours] Whether the robot was carried to an island that no experience of the goal lies on. Where it is to the goal
-        is unknown, and there is no way before the two are one map again.
+        """[ours] Whether the robot was carried to a submap that no experience of the goal lies on. Where it is to the
+        goal is unknown, and there is no way before the two are merged.
         test_routes.py::test_carried_away_from_the_goal_it_looks_for_the_way_back."""
         islands = experiences.island_of
         if (islands[self.goals] == islands[experiences.active]).any():
@@ -200,8 +137,6 @@ class RouteFollower:
         remaining = first + float(np.hypot(*np.diff(xy, axis=0).T).sum())
         return Progress(self.goal, self.state, float(arrival[-1]), remaining, nodes, arrival)
 
-    # ------------------------------------------------------------ what is in the way
-
     def _watch_headway(self, p: RouteParams) -> bool:
         """Whether a trial of the way ahead has failed for want of headway. A robot that stays at one place for long
         looks around. test_routes.py::{test_a_blocked_way_is_left, test_a_door_that_was_shut_is_given_up}.
@@ -235,8 +170,6 @@ class RouteFollower:
         for i, j in pairs:
             experiences.tried(int(i), int(j), False)
 
-    # ------------------------------------------------------------ arriving
-
     def _goal_from_robot(self, experiences: ExperienceMap) -> tuple[float, float]:
         """The place of the goal's experience that is nearest to the robot, whichever way it faces; m, robot's frame."""
         places, robot = experiences.poses[list(self.goals), :2], experiences.robot
@@ -255,8 +188,6 @@ class RouteFollower:
         between. test_routes.py::test_the_last_metre_is_driven_straight."""
         away = math.hypot(*goal)
         return away < p.approach_m and local.free_way(math.atan2(goal[1], goal[0]), p) >= away - p.arrival_m
-
-    # ------------------------------------------------------------ planning
 
     def plan(self, experiences: ExperienceMap, local: LocalMovement, p: PilotParams) -> None:
         """Plan the quickest route, from the active experience or, over an imagined link, from another one nearby."""
@@ -326,7 +257,7 @@ def _from_robot(robot: Pose2, x: float, y: float) -> tuple[float, float]:
 
 @njit(cache=True, nogil=True)
 def _along(
-    poses: NDArray[np.float64], nodes: NDArray[np.int64], at: int, x: float, y: float, window: float, lookahead: float
+    poses: _Array, nodes: NDArray[np.int64], at: int, x: float, y: float, window: float, lookahead: float
 ) -> tuple[int, int]:
     """Where on the route the robot at (x, y) is, on the stretch of length `window` from `at`: the nearest node, of
     equals the last. And the first node more than `lookahead` farther on. All lengths in m."""
@@ -344,3 +275,67 @@ def _along(
         to += 1
         way += math.hypot(poses[nodes[to], 0] - poses[nodes[to - 1], 0], poses[nodes[to], 1] - poses[nodes[to - 1], 1])
     return here, to
+
+
+@kind("headway/1")
+class Headway:
+    """Whether the robot gets on along its route, judged by its own odometry.
+
+    `blocked`: it has come no nearer for `trial_s`. `astray`: it has not left the place for `no_headway_s`. [ours] The
+    time that a link was learnt to take is no measure: floor may be slow, the map may be bent, and the time left jumps
+    with each new plan. What counts is by how much the robot itself has come nearer to the points it headed for.
+    test_headway.py::{test_slow_is_not_blocked, test_a_robot_that_comes_no_nearer_fails,
+    test_turning_towards_the_way_is_headway_but_not_for_ever}.
+    """
+
+    def __init__(self) -> None:
+        self._aim: tuple[float, float] | None = None  # the point headed for, m, robot's frame
+        self._off_x = self._off_y = self._heading = 0.0  # by odometry, since it last left a place
+        self._stays_s = 0.0  # time since then
+        self.begin()
+
+    def begin(self) -> None:
+        """A new trial begins."""
+        self._nearer_m = self._most_m = 0.0  # how much nearer it has come in all, and at most
+        self._least_turn = math.inf  # to the aim, rad
+        self._still_s = 0.0
+
+    def leave(self) -> None:
+        """It goes elsewhere for a while: count its stay from now."""
+        self._stays_s = self._off_x = self._off_y = 0.0
+        self.begin()
+
+    def blocked(self, p: RouteParams) -> bool:
+        return self._still_s > p.trial_s
+
+    def astray(self, p: RouteParams) -> bool:
+        return self._stays_s > p.no_headway_s
+
+    def head_for(self, aim: tuple[float, float] | None) -> None:
+        """aim: the next point (m, robot's frame), None for no route."""
+        self._aim = aim
+
+    def move(self, odometry: Odometry, trying: bool, p: RouteParams) -> None:
+        """The robot moved; called in every tick. trying: whether it drove towards the aim, and did not back out."""
+        step, turn = odometry.speed * odometry.dt, odometry.yaw_rate * odometry.dt
+        middle = self._heading + turn / 2
+        self._heading += turn
+        self._off_x += step * math.cos(middle)
+        self._off_y += step * math.sin(middle)
+        self._stays_s += odometry.dt
+        if math.hypot(self._off_x, self._off_y) > p.place_m:
+            self._stays_s = self._off_x = self._off_y = 0.0
+        if self._aim is None:
+            return
+        x, y = self._aim
+        away = math.hypot(x, y)
+        x, y = x - step * math.cos(turn / 2), y - step * math.sin(turn / 2)
+        c, s = math.cos(turn), math.sin(turn)
+        self._aim = c * x + s * y, -s * x + c * y
+        self._nearer_m += away - math.hypot(x, y)
+        self._still_s += odometry.dt * trying
+        bearing = abs(math.atan2(self._aim[1], self._aim[0]))
+        if self._nearer_m > self._most_m + p.headway_m:
+            self._most_m, self._least_turn, self._still_s = self._nearer_m, bearing, 0.0
+        elif bearing < self._least_turn - p.headway_rad:
+            self._least_turn, self._still_s = bearing, 0.0

@@ -1,10 +1,8 @@
-"""The parameters with which a recording is played: those of the office, scaled by rules that look at the recording.
+"""The parameters with which a recording is played: those of the office, scaled by rules that survey the recording.
 
 What a robot sees changes with the way it drives, and who drives in the open drives faster. So all lengths grow with the
-typical speed; how alike views must be follows from how unlike they are. And who sees wide must not take a view for one that
-is turned far: views are shifted by as large an angle as in the office, in columns of the camera that was used.
-
-What a first look over a recording tells: how fast the robot is, how wide its camera sees, how much its views differ.
+typical speed; how alike views must be follows from how unlike they are. And who sees wide must not take a view for one
+that is turned far: views are shifted by as large an angle as in the office, in columns of the camera that was used.
 """
 
 from __future__ import annotations
@@ -26,6 +24,93 @@ from ratslam_core.local_view.front_ends import FRONT_ENDS, FrontEnd
 from ratslam_core.local_view.front_ends.laser import Laser
 from ratslam_core.local_view.matcher import Features, least_difference
 
+LEAST_SCALE, MOST_SCALE = 0.02, 50.0
+UNRELATED, UNRELATED_SCANS = 0.0025, 0.002  # share of unrelated views that may be taken for one another
+LOOK_SIGMA_M = 0.35  # of an observation that is only just believed, in the office
+LASER_SHIFT = 5  # columns of 3 degrees: a laser sees so well that a turn need not spoil a view
+LASER_GATE_RAD = 0.8  # scans laid on scans keep the heading: who turns the robot farther at once is a look-alike
+WIDTH_ERROR = 1.1  # the camera's width is measured to a tenth
+
+
+def rules(recording: Recording, scans: ScanRules | None = None) -> tuple[Config, Motion]:
+    """The parameters for this recording, and how its motion is read."""
+    base = Config().with_value("local_view.front_end", _front_end(recording))
+    laser = base.local_view.front_end == "laser"
+    if laser:
+        base = base.with_values({"local_view.shift": LASER_SHIFT, "occupancy.enabled": False})
+    end, told = FRONT_ENDS[base.local_view.front_end](), base.local_view
+    turned_rad = told.shift * told.field_of_view / end.columns
+    shift_at: Callable[[float], int] = (
+        (lambda _: LASER_SHIFT) if laser else partial(columns_of, turned_rad, end.columns)
+    )
+    seen = survey(recording, end, shift_at)
+    usual = base.pilot.cruise_speed
+    levels_per_m = 1.0
+    scale = seen.speed / usual if seen.speed > 0 else 1.0
+    if not recording.about.has & {"speed", "throttle"}:
+        levels_per_m, scale = scale, 1.0
+    scale = min(max(scale, LEAST_SCALE), MOST_SCALE)
+    values: dict[str, Value] = {
+        **_lengths(base, scale),
+        **_views(recording, seen, scale),
+        "experience_map.familiar_ground": False,
+    }
+    motion = Motion(recording.about, seen.dt, seen.field_of_view, levels_per_m, scans=scans or ScanRules())
+    return base.with_values(values), motion
+
+
+def columns_of(turned_rad: float, columns: int, field_of_view: float) -> int:
+    """[ours] How many whole columns of such a camera are no more than this angle, or a tenth above it at most.
+
+    A column of a wide camera is many degrees: views under such turns are other views, and shifting them makes
+    look-alikes. test_playing.py::test_views_are_shifted_by_the_same_angle_whatever_the_camera.
+    `local_view.shift` of a config wins.
+    """
+    return int(WIDTH_ERROR * turned_rad * columns / field_of_view)
+
+
+def _front_end(recording: Recording) -> str:
+    """What it sees with: a camera, beside sonars or not, or a laser."""
+    about = recording.about
+    if "camera" not in about.has:
+        if not is_laser(about):
+            raise ValueError(
+                f"{about.name}: neither a camera nor a laser, so there is nothing that could be recognised"
+            )
+        return "laser"
+    return "image and sonars" if about.beam_angles_rad and not is_laser(about) else "limited levels"
+
+
+def _lengths(base: Config, scale: float) -> dict[str, Value]:
+    """The lengths of the engine, times the scale, as far as their ranges go. Those of the map are in cells."""
+    own = {section.name for section in fields(base.engine)}
+    values: dict[str, Value] = {}
+    for name, item, value in base.items():
+        if name.split(".")[0] in own and item.metadata["unit"] == "m" and isinstance(value, float):
+            values[name] = min(max(value * scale, item.metadata["low"]), item.metadata["high"])
+    return values
+
+
+def _views(recording: Recording, seen: Survey, scale: float) -> dict[str, Value]:
+    """How wide the robot sees, and how alike views must be."""
+    values: dict[str, Value] = {"local_view.field_of_view": seen.field_of_view, "local_view.shift": seen.shift}
+    if "camera" not in recording.about.has and is_laser(recording.about):
+        angles = recording.about.beam_angles_rad  # half a beam to either side is seen, too
+        span = (max(angles) - min(angles)) * len(angles) / (len(angles) - 1)
+        values["local_view.field_of_view"] = min(span, 2 * np.pi)
+        values["evidence.gate_rad"] = LASER_GATE_RAD
+    # Pictures of real cameras jump when one is dropped, so a jump is no kidnap: only a gap in the recording is.
+    values |= {"local_view.surprise": 100.0, "kidnap.range_surprise": 0.0}
+    if len(seen.unlike) == 0:
+        return values
+    share = UNRELATED if "camera" in recording.about.has else UNRELATED_SCANS
+    threshold, own = float(np.quantile(seen.unlike, share)), FRONT_ENDS[_front_end(recording)].threshold
+    values["local_view.match_threshold"] = threshold / own
+    # Where most views are the same, as of a camera that stood still, the threshold is 0.
+    values["experience_map.anchor_sigma"] = min(LOOK_SIGMA_M * scale / threshold, 1.0) if threshold > 0 else 1.0
+    return values
+
+
 MOST_MOMENTS = 6000  # that are looked at, from the beginning
 USUAL_VIEW = math.radians(60)  # of a camera of which nothing is known
 NARROWEST, WIDEST = math.radians(20), math.radians(170)
@@ -38,7 +123,7 @@ PAIRS = 20_000  # that are drawn of them
 
 @dataclass(frozen=True, slots=True)
 class Survey:
-    """Of one recording."""
+    """What is found out about a recording: how fast the robot is, how wide it sees, how much its views differ."""
 
     dt: float  # s between two moments, typically
     speed: float  # m/s while it drives, typically; 0 when it never drives; by pictures alone, grey levels per second
@@ -49,7 +134,7 @@ class Survey:
 
 
 def survey(recording: Recording, front_end: FrontEnd, shift_at: Callable[[float], int]) -> Survey:
-    """Look over a recording once, with the front end that is to be used.
+    """Go through a recording once, with the front end that is to be used.
 
     shift_at: how many columns are to be tried to either side, when the camera sees so wide (rad).
     """
@@ -69,14 +154,12 @@ def survey(recording: Recording, front_end: FrontEnd, shift_at: Callable[[float]
             views.append(seen)
     speed = typical(speeds)
     way = np.cumsum(np.multiply(speeds, np.minimum(dts, 1.0)))
-    complete = len(views) == len(dts)
     field_of_view = _field_of_view(profiles, turns)
     shift = shift_at(field_of_view)
-    alike, unlike = _differences(views, way, ALIKE_S * speed, np.cumsum(dts), front_end, shift) if complete else _NONE
+    alike = unlike = np.zeros(0)
+    if len(views) == len(dts):
+        alike, unlike = _differences(views, way, ALIKE_S * speed, np.cumsum(dts), front_end, shift)
     return Survey(typical(dts) or 0.1, speed, field_of_view, shift, alike, unlike)
-
-
-_NONE = np.zeros(0), np.zeros(0)
 
 
 def _view(moment: Moment, front_end: FrontEnd) -> Features | None:
@@ -87,7 +170,7 @@ def _view(moment: Moment, front_end: FrontEnd) -> Features | None:
 
 
 def _field_of_view(profiles: list[Profile | None], turns: list[float]) -> float:
-    """By how many columns pictures shift when the gyro or the wheels tell of a turn: the median says how wide they are."""
+    """By how many columns pictures shift when gyro or wheels tell of a turn: the median says how wide they are."""
     widths: list[float] = []
     for before, now, turn in zip(profiles, profiles[1:], turns[1:], strict=False):
         if abs(turn) < LEAST_TURN or before is None or now is None:
@@ -114,99 +197,3 @@ def _differences(
     pairs = np.random.default_rng(0).integers(0, len(views), (PAIRS, 2))
     unlike = [apart(int(i), int(j)) for i, j in pairs if abs(time[i] - time[j]) > APART_S]
     return np.array(alike), np.array(unlike)
-
-
-LEAST_SCALE, MOST_SCALE = 0.02, 50.0
-UNRELATED, UNRELATED_SCANS = 0.0025, 0.002  # share of unrelated views that may be taken for one another
-LOOK_SIGMA_M = 0.35  # of a look that is only just believed, in the office
-LASER_SHIFT = 5  # columns of 3 degrees: a laser sees so well that a turn need not spoil a view
-LASER_GATE_RAD = (
-    0.8  # scans laid on scans keep the heading: a look that turns the robot farther at once is a look-alike
-)
-WIDTH_ERROR = 1.1  # the camera's width is measured to a tenth
-
-
-def rules(recording: Recording, scans: ScanRules | None = None) -> tuple[Config, Motion]:
-    """The parameters for this recording, and how its motion is read."""
-    base = Config().with_value("local_view.front_end", _front_end(recording))
-    laser = base.local_view.front_end == "laser"
-    if laser:
-        base = base.with_values({"local_view.shift": LASER_SHIFT, "occupancy.enabled": False})
-    end, told = FRONT_ENDS[base.local_view.front_end](), base.local_view
-    turned_rad = told.shift * told.field_of_view / end.columns
-    shift_at = _laser_shift if laser else partial(columns_of, turned_rad, end.columns)
-    seen = survey(recording, end, shift_at)
-    usual = base.pilot.cruise_speed
-    levels_per_m = 1.0
-    scale = seen.speed / usual if seen.speed > 0 else 1.0
-    if not recording.about.has & {"speed", "throttle"}:
-        levels_per_m, scale = scale, 1.0
-    scale = min(max(scale, LEAST_SCALE), MOST_SCALE)
-    values: dict[str, Value] = {
-        **_lengths(base, scale),
-        **_views(recording, seen, scale),
-        "experience_map.familiar_ground": False,
-    }
-    motion = Motion(recording.about, seen.dt, seen.field_of_view, levels_per_m, scans=scans or ScanRules())
-    return base.with_values(values), motion
-
-
-def columns_of(turned_rad: float, columns: int, field_of_view: float) -> int:
-    """[ours] How many whole columns of such a camera are no more than this angle, or a tenth above it at most.
-
-    A column of a wide camera is many degrees: views under such turns are other views, and shifting them makes look-alikes.
-    test_playing.py::test_views_are_shifted_by_the_same_angle_whatever_the_camera. `local_view.shift` of a config wins.
-    """
-    return int(WIDTH_ERROR * turned_rad * columns / field_of_view)
-
-
-def _laser_shift(_field_of_view: float) -> int:
-    return LASER_SHIFT
-
-
-def _front_end(recording: Recording) -> str:
-    """What it sees with: a camera, beside sonars or not, or a laser."""
-    about = recording.about
-    if "camera" not in about.has:
-        if not is_laser(about):
-            raise ValueError(
-                f"{about.name}: neither a camera nor a laser, so there is nothing that could be recognised"
-            )
-        return "laser"
-    return "image and sonars" if about.beam_angles_rad and not is_laser(about) else "limited levels"
-
-
-def _lengths(base: Config, scale: float) -> dict[str, Value]:
-    """The lengths of the engine, times the scale, as far as their ranges go. Those of the map are in cells."""
-    own = {section.name for section in fields(base.engine)}
-    values: dict[str, Value] = {}
-    for name, item, value in base.items():
-        if name.split(".")[0] in own and item.metadata["unit"] == "m" and isinstance(value, float):
-            values[name] = min(max(value * scale, item.metadata["low"]), item.metadata["high"])
-    return values
-
-
-def _views(recording: Recording, seen: Survey, scale: float) -> dict[str, Value]:
-    """How alike views must be."""
-    values: dict[str, Value] = {
-        "local_view.field_of_view": seen.field_of_view,
-        "local_view.shift": seen.shift,
-    }
-    if "camera" not in recording.about.has and is_laser(recording.about):
-        values["local_view.field_of_view"] = _span(recording.about.beam_angles_rad)
-        values["evidence.gate_rad"] = LASER_GATE_RAD
-    # Pictures of real cameras jump when one is dropped, so a jump is no kidnap: only a gap in the recording is.
-    values |= {"local_view.surprise": 100.0, "kidnap.range_surprise": 0.0}
-    if len(seen.unlike) == 0:
-        return values
-    share = UNRELATED if "camera" in recording.about.has else UNRELATED_SCANS
-    threshold, own = float(np.quantile(seen.unlike, share)), FRONT_ENDS[_front_end(recording)].threshold
-    values["local_view.match_threshold"] = threshold / own
-    # Where most views are the same, as of a camera that stood still, the threshold is 0.
-    values["experience_map.anchor_sigma"] = min(LOOK_SIGMA_M * scale / threshold, 1.0) if threshold > 0 else 1.0
-    return values
-
-
-def _span(angles_rad: tuple[float, ...]) -> float:
-    """The angle that all beams together cover, half a beam to either side included."""
-    return min((max(angles_rad) - min(angles_rad)) * len(angles_rad) / (len(angles_rad) - 1), 2 * np.pi)

@@ -1,12 +1,4 @@
-"""How a recorded robot moved, from what its recording has: wheels, gyro, throttle, or pictures alone.
-
-Odometry made from a recording's truth, with errors of known size, for recordings that have poses but no wheels.
-
-Odometry from pictures alone: the turn from the shift of their columns, the speed from what the shift does not explain.
-
-Milford and Wyeth 2008, section III: two scanline intensity profiles are laid over each other. One unit of speed is what
-changes the profile by its typical change; whoever needs metres has to scale it.
-"""
+"""How a recorded robot moved, from what its recording has: wheels, gyro, throttle, pictures alone, or its truth."""
 
 from __future__ import annotations
 
@@ -42,9 +34,9 @@ class Motion:
         *,
         scans: ScanRules | None = None,
     ) -> None:
-        """scans: how a laser, if there is one, makes the wheels better, None: it does not; dt: of a typical moment, s.
+        """dt: of a typical moment, s; levels_per_m: how much a picture changes while the robot drives a metre.
 
-        levels_per_m: how much a picture changes while the robot drives a metre.
+        scans: how a laser, if there is one, makes the wheels better; None: it does not.
         """
         self._dt, self._levels_per_m = dt, levels_per_m
         wheels = "speed" in about.has
@@ -69,7 +61,10 @@ class Motion:
             told = Odometry(moment.speed, moment.yaw_rate or 0.0, dt)
             return told if self._scans is None or moment.ranges_m is None else self._scans.better(told, moment.ranges_m)
         turn, change, stands = self._look(moment)
-        speed = change / self._levels_per_m / dt if moment.throttle is None else _driven(moment.throttle)
+        if moment.throttle is None:
+            speed = change / self._levels_per_m / dt
+        else:
+            speed = THROTTLE_SPEED * max(moment.throttle, 0.0)  # one below zero brakes
         yaw_rate = turn / dt if moment.yaw_rate is None else moment.yaw_rate
         told, before = (speed, yaw_rate), self._before
         self._before = told
@@ -98,20 +93,82 @@ def lengths(about: About) -> str | None:
     return "lengths are no metres: by pictures alone nobody knows how fast the robot is, and its typical speed is the office's"
 
 
-def _driven(throttle: float) -> float:
-    """m/s; a throttle below zero brakes."""
-    return THROTTLE_SPEED * max(throttle, 0.0)
-
-
 def typical(values: list[float]) -> float:
     """The median of those that are not zero; 0 when there is none."""
     some = sorted(abs(v) for v in values if v != 0 and math.isfinite(v))
     return some[len(some) // 2] if some else 0.0
 
 
+COLUMNS = 64
+BAND = 0.75  # share of the picture, from the top: the floor before a robot flows too fast to be compared
+MOST = 24  # columns that two profiles may be shifted
+STANDS = 1.0  # grey levels; pictures that differ by less show the camera's noise and nothing else
+
+Profile = NDArray[np.float64]  # (COLUMNS,) mean grey level of each column, mean 0
+
+
+@kind("visual odometry/1")
+class VisualOdometry:
+    """Odometry from pictures alone: the turn from the shift of their columns, the speed from what the shift leaves.
+
+    Milford and Wyeth 2008, section III: two scanline intensity profiles are laid over each other. One unit of speed is
+    what changes the profile by its typical change; whoever needs metres has to scale it.
+    """
+
+    def __init__(self, field_of_view: float) -> None:
+        """field_of_view: width of the camera's view, rad."""
+        self.field_of_view = field_of_view
+        self._small: NDArray[np.float64] | None = None
+
+    def see(self, image: NDArray[np.uint8]) -> tuple[float, float, bool]:
+        """(turn in rad, left positive; change in grey levels; whether it stands) since the picture before.
+
+        The first picture tells nothing: it stands.
+        """
+        small, before = small_grey(image), self._small
+        self._small = small
+        if before is None or float(np.abs(small - before).mean()) < STANDS:
+            return 0.0, 0.0, True
+        shift, left = shift_of(profile_of(small), profile_of(before))
+        return shift * self.field_of_view / COLUMNS, left, False
+
+
+def small_grey(image: NDArray[np.uint8]) -> NDArray[np.float64]:
+    """A picture as 64 x 48 grey levels, in which the camera's noise has been averaged out."""
+    grey = np.asarray(cv2.cvtColor(image, cv2.COLOR_RGB2GRAY)) if image.ndim == 3 else image
+    return np.asarray(cv2.resize(grey, (COLUMNS, 48), interpolation=cv2.INTER_AREA), np.float64)
+
+
+def profile_of(small: NDArray[np.float64]) -> Profile:
+    """The scanline intensity profile of a small grey picture."""
+    means = small[: int(BAND * len(small))].mean(axis=0)
+    return means - means.mean()
+
+
+def shift_of(new: Profile, old: Profile, most: int = MOST) -> tuple[float, float]:
+    """By how many columns the scene has moved to the right from `old` to `new`, to a fraction; and the mean difference
+    left. A robot that turns left, which is positive, sees the scene move to the right.
+    """
+    apart = np.array([_apart(new, old, s) for s in range(-most, most + 1)])
+    best = int(apart.argmin())
+    part = 0.0
+    if 0 < best < 2 * most:
+        left, least, right = apart[best - 1 : best + 2]
+        steepest = max(left, right) - least
+        part = (left - right) / (2 * steepest) if steepest > 0 else 0.0
+    return best - most + part, float(apart[best])
+
+
+def _apart(new: Profile, old: Profile, shift: int) -> float:
+    """Mean absolute difference of two profiles over the columns that both show."""
+    here, there = new[max(shift, 0) : COLUMNS + min(shift, 0)], old[max(-shift, 0) : COLUMNS - max(shift, 0)]
+    off = here - there
+    return float(np.abs(off - off.mean()).mean())
+
+
 @dataclass(frozen=True, slots=True)
 class OdometryErrors:
-    """The errors that wheels would have made."""
+    """The errors that wheels would have made: odometry from a truth has them, in recordings that have no wheels."""
 
     speed_noise: float  # standard deviation, as a share of the speed
     yaw_noise: float  # standard deviation (rad/s)
@@ -171,67 +228,3 @@ class WithMadeOdometry:
             if not math.isfinite(speed + turn):
                 speed = turn = 0.0
             yield replace(moment, speed=speed, yaw_rate=turn)
-
-
-Profile = NDArray[np.float64]  # (COLUMNS,) mean grey level of each column, mean 0
-
-COLUMNS = 64
-BAND = 0.75  # share of the picture, from the top: the floor before a robot flows too fast to be compared
-MOST = 24  # columns that two profiles may be shifted
-STANDS = 1.0  # grey levels; pictures that differ by less show the camera's noise and nothing else
-
-
-def small_grey(image: NDArray[np.uint8]) -> NDArray[np.float64]:
-    """A picture as 64 x 48 grey levels, in which the camera's noise has been averaged out."""
-    grey = np.asarray(cv2.cvtColor(image, cv2.COLOR_RGB2GRAY)) if image.ndim == 3 else image
-    return np.asarray(cv2.resize(grey, (COLUMNS, 48), interpolation=cv2.INTER_AREA), np.float64)
-
-
-def profile_of(small: NDArray[np.float64]) -> Profile:
-    """The scanline intensity profile of a small grey picture."""
-    means = small[: int(BAND * len(small))].mean(axis=0)
-    return means - means.mean()
-
-
-def shift_of(new: Profile, old: Profile, most: int = MOST) -> tuple[float, float]:
-    """By how many columns the scene has moved to the right from `old` to `new`, to a fraction; and the mean difference left.
-
-    A robot that turns left, which is positive, sees the scene move to the right.
-    """
-    apart = np.array([_apart(new, old, s) for s in range(-most, most + 1)])
-    best = int(apart.argmin())
-    part = 0.0
-    if 0 < best < 2 * most:
-        left, least, right = apart[best - 1 : best + 2]
-        steepest = max(left, right) - least
-        part = (left - right) / (2 * steepest) if steepest > 0 else 0.0
-    return best - most + part, float(apart[best])
-
-
-def _apart(new: Profile, old: Profile, shift: int) -> float:
-    """Mean absolute difference of two profiles over the columns that both show."""
-    here, there = new[max(shift, 0) : COLUMNS + min(shift, 0)], old[max(-shift, 0) : COLUMNS - max(shift, 0)]
-    off = here - there
-    return float(np.abs(off - off.mean()).mean())
-
-
-@kind("visual odometry/1")
-class VisualOdometry:
-    """Turn and change of the picture, from one picture to the next."""
-
-    def __init__(self, field_of_view: float) -> None:
-        """field_of_view: width of the camera's view, rad."""
-        self.field_of_view = field_of_view
-        self._small: NDArray[np.float64] | None = None
-
-    def see(self, image: NDArray[np.uint8]) -> tuple[float, float, bool]:
-        """(turn in rad, left positive; change in grey levels; whether it stands) since the picture before.
-
-        The first picture tells nothing: it stands.
-        """
-        small, before = small_grey(image), self._small
-        self._small = small
-        if before is None or float(np.abs(small - before).mean()) < STANDS:
-            return 0.0, 0.0, True
-        shift, left = shift_of(profile_of(small), profile_of(before))
-        return shift * self.field_of_view / COLUMNS, left, False

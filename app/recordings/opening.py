@@ -1,13 +1,5 @@
-"""Opens a recording: finds out what kind it is, by what is in it rather than by its name.
-
-A digest of a recording on the disk, to tell whether it is still the one that a run was made from. [ours]
-
-A small file counts as a whole; of a large one its length and pieces from all over it, since bags may have many gigabytes.
-test_kept_recordings.py.
-
-A recording that was found within something larger: what else lies there is told of, and an archive's folder goes with it.
-
-A run of ours that was exported and is played as a recording: it brings its parameters and its seed.
+"""Opens a recording: finds out what kind it is, by what is in it rather than by its name. And tells by a fingerprint
+whether one on the disk is still that from which a run was made.
 """
 
 from __future__ import annotations
@@ -43,39 +35,133 @@ from app.recordings.formats.video import VIDEOS, open_video
 from app.recordings.motion import OdometryErrors, WithMadeOdometry
 from app.recordings.recording import About, Moment, Recording, Wanted, every
 
-WHOLE_BYTES = 64 << 20  # of files up to this size everything counts
-PIECE_BYTES, PIECES = 1 << 20, 32
+_READ = (
+    "MCAP, a bag of ROS 1 or 2, a video, a folder of pictures, a Donkey tub, AirSim's folder, a CARMEN log, or an archive "
+    "(.zip, .tar.gz) of one"
+)
+_LOOK = 64_000  # bytes at the beginning of a text file
+_SINGLE = (".bag", ".clf", ".carmen")
 
 
-def fingerprint(path: Path) -> str:
-    """SHA-256 over the names, lengths and contents of all files that belong to it. OSError: one cannot be read."""
-    whole = hashlib.sha256()
-    home = path if path.is_dir() else path.parent
-    for file in files_of(path):
-        size = file.stat().st_size
-        whole.update(f"{file.relative_to(home).as_posix()}\0{size}\0".encode())
-        with file.open("rb") as data:
-            if size <= WHOLE_BYTES:
-                whole.update(data.read())
-                continue
-            for k in range(PIECES):
-                data.seek(k * (size - PIECE_BYTES) // (PIECES - 1))
-                whole.update(data.read(PIECE_BYTES))
-    return whole.hexdigest()
+@dataclass(frozen=True, slots=True)
+class Opening:
+    """What somebody may say about a recording."""
+
+    topics: Choice = field(default_factory=Choice)
+    rate_hz: float | None = None  # pictures a second, where no file tells their times
+    made: OdometryErrors | None = None  # odometry is made from the truth with these errors
+    seed: int = 0  # of those errors
+
+    def __post_init__(self) -> None:
+        if self.rate_hz is not None and not (math.isfinite(self.rate_hz) and 0.01 <= self.rate_hz <= 1000):
+            raise ValueError(f"--rate must be from 0.01 to 1000 pictures a second, got {self.rate_hz!r}")
 
 
-def files_of(path: Path) -> list[Path]:
-    """The files of a recording, in the order of their names: those of a folder; or a file and the table beside it."""
-    if not path.is_dir():
-        if path.name in (AIRSIM, MANIFEST):
-            return files_of(path.parent)
-        table = path.with_suffix(".csv")
-        return [path, *([table] if table != path and table.is_file() else [])]
-    return sorted(file for file in path.rglob("*") if file.is_file())
+def open_recording(path: Path | str, opening: Opening | None = None) -> Recording:
+    """The recording in a file or a folder. ValueError says in one sentence why it cannot be played."""
+    path, opening = Path(path), opening or Opening()
+    try:
+        if not path.exists():
+            raise ValueError(f"{path}: there is no such file or folder")
+        recording = _folder(path, opening) if path.is_dir() else _file(path, opening)
+    except OSError as error:
+        raise ValueError(f"{path}: cannot be read: {error.strerror or error}") from None
+    return recording if opening.made is None else WithMadeOdometry(recording, opening.made, opening.seed)
 
 
-class Within:
-    """The same recording under the name of what it was found in."""
+def _folder(path: Path, opening: Opening) -> Recording:
+    """What is found in a folder, at whatever depth it begins; of several recordings the one that lies highest."""
+    names = files_in(path)
+    home, opened = _found(path, names)
+    if opened is not None:
+        used = set[str]()
+        recording = opened(home, opening, used)
+        inside = {f"{home.relative_to(path).as_posix()}/{name}".removeprefix("./") for name in used}
+        return _Within(recording, path.name, left_over(names, inside, {}))
+    alone = next((name for name in names if name.lower().removesuffix(".gz").endswith(_SINGLE)), None)
+    if alone is not None:
+        return _Within(_file(within(path, alone), opening), path.name, left_over(names, {alone}, {}))
+    films = [name for name in names if name.lower().endswith(VIDEOS)]
+    if films and len([name for name in names if name.lower().endswith(PICTURES)]) < 2:
+        film = within(path, films[0])
+        used = {films[0], str(PurePosixPath(films[0]).with_suffix(".csv"))}
+        return _Within(_file(film, opening), path.name, left_over(names, used, {}))
+    return open_image_folder(path, opening.rate_hz)
+
+
+_Opener = Callable[[Path, Opening, set[str]], Recording]  # used: is filled with the names of the files that are read
+
+
+def _found(path: Path, names: list[str]) -> tuple[Path, _Opener | None]:
+    """Where a recording begins that is known by the names of its files, and what opens it."""
+    found = [
+        (name.count("/"), order, name, opened)
+        for name in names
+        for order, (pattern, opened) in enumerate(_MARKS)
+        if re.fullmatch(pattern, name.rpartition("/")[2])
+    ]
+    if not found:
+        return path, _bag if METADATA in names and (path / METADATA).is_file() else None
+    _, _, name, opened = min(found, key=lambda each: each[:3])
+    return (path / name).parent, opened
+
+
+def _bag(home: Path, opening: Opening, used: set[str]) -> Recording:
+    bag = Bag(home)
+    used |= bag.names
+    return open_ros(home, "bag of ROS 2", bag.packets, opening.topics)
+
+
+_MARKS: tuple[tuple[str, _Opener], ...] = (
+    (re.escape(AIRSIM), lambda home, _, used: open_airsim(home, used)),
+    (re.escape(MANIFEST), lambda home, _, used: open_tub(home, used)),
+    (r".*\.catalog", lambda home, _, used: open_tub(home, used)),
+    (r".*\.(db3|mcap)(\.zstd)?", _bag),
+    (r"record_\d+\.json", lambda home, _, used: open_old_tub(home, used)),
+)
+
+
+def _file(path: Path, opening: Opening) -> Recording:
+    with open_whole(path):
+        if not has_bag(path) and is_archive(path):
+            return _archive(path, opening)
+    with open_whole(path) as file:
+        try:
+            start = file.read(_LOOK)
+        except (OSError, EOFError, zlib.error) as error:
+            raise ValueError(f"{path.name}: cannot be unpacked: {error}") from None
+    if start.startswith(MCAP):
+        recording, said = open_ros(path, "MCAP", partial(mcap_packets, path), opening.topics), said_of_run(path)
+        return _OwnRun(recording, said) if said else recording
+    if start.startswith(BAG):
+        return open_ros(path, "bag of ROS 1", partial(bag_packets, path), opening.topics)
+    if start.startswith(b"SQLite format 3\0") or (start.startswith(ZSTD) and has_bag(path)):
+        return _bag(path, opening, set())
+    if path.name in (AIRSIM, MANIFEST):
+        return _folder(path.parent, opening)
+    if path.suffix.lower() in VIDEOS:
+        return open_video(path)
+    if start.lstrip().startswith(b"{"):
+        return open_scans(path)
+    lines = start.decode("utf-8", errors="replace").splitlines()
+    if path.suffix.lower() in (".log", ".clf", ".carmen") or any(line.startswith((*WORDS, "PARAM ")) for line in lines):
+        return open_carmen(path)
+    raise ValueError(f"{path.name}: not a recording that can be read; expected {_READ}")
+
+
+def _archive(path: Path, opening: Opening) -> Recording:
+    folder, unused = unpack(path)
+    try:
+        return _Unpacked(_folder(folder, opening), path.name, folder, unused)
+    except BaseException as error:
+        shutil.rmtree(folder, ignore_errors=True)
+        if isinstance(error, ValueError):
+            raise ValueError(str(error).replace(str(folder), path.name)) from None
+        raise
+
+
+class _Within:
+    """A recording under the name of the larger thing that it was found in. What else lies there is told of."""
 
     def __init__(self, recording: Recording, name: str, unused: tuple[str, ...] = ()) -> None:
         self._recording, self._name, self._more = recording, name, unused
@@ -89,7 +175,7 @@ class Within:
         return self._recording.moments(wanted)
 
 
-class Unpacked(Within):
+class _Unpacked(_Within):
     """One that was unpacked into a folder, which is deleted when nobody has the recording any more."""
 
     def __init__(self, recording: Recording, name: str, folder: Path, unused: tuple[str, ...]) -> None:
@@ -105,8 +191,9 @@ class Unpacked(Within):
         yield from super().moments(wanted)  # so that the folder is there until the last of them
 
 
-class OwnRun:
-    """With these, the same views, experiences and links come out as in the run."""
+class _OwnRun:
+    """A run of ours that was exported. It brings its parameters and its seed: with these, the same views, experiences
+    and links come out as in the run."""
 
     def __init__(self, recording: Recording, said: dict[str, str]) -> None:
         """said: what the run says of itself, as `app/export/mcap_file.py` writes it."""
@@ -132,139 +219,36 @@ class OwnRun:
         return self._recording.moments(wanted)
 
 
-READ = (
-    "MCAP, a bag of ROS 1 or 2, a video, a folder of pictures, a Donkey tub, AirSim's folder, a CARMEN log, or an archive "
-    "(.zip, .tar.gz) of one"
-)
-_LOOK = 64_000  # bytes at the beginning of a text file
+WHOLE_BYTES = 64 << 20  # of files up to this size everything counts
+PIECE_BYTES, PIECES = 1 << 20, 32
 
 
-@dataclass(frozen=True, slots=True)
-class Opening:
-    """What somebody may say about a recording."""
+def fingerprint(path: Path) -> str:
+    """[ours] SHA-256 over the names, lengths and contents of all files that belong to it. OSError: one cannot be read.
 
-    topics: Choice = field(default_factory=Choice)
-    rate_hz: float | None = None  # pictures a second, where no file tells their times
-    made: OdometryErrors | None = None  # odometry is made from the truth with these errors
-    seed: int = 0  # of those errors
-
-    def __post_init__(self) -> None:
-        if self.rate_hz is not None and not (math.isfinite(self.rate_hz) and 0.01 <= self.rate_hz <= 1000):
-            raise ValueError(f"--rate must be from 0.01 to 1000 pictures a second, got {self.rate_hz!r}")
-
-
-def open_recording(path: Path | str, opening: Opening | None = None) -> Recording:
-    """The recording in a file or a folder. ValueError says in one sentence why it cannot be played."""
-    path, opening = Path(path), opening or Opening()
-    try:
-        folder, there = path.is_dir(), path.exists()
-        if not there:
-            raise ValueError(f"{path}: there is no such file or folder")
-        recording = _folder(path, opening) if folder else _file(path, opening)
-    except OSError as error:
-        raise ValueError(f"{path}: cannot be read: {error.strerror or error}") from None
-    return recording if opening.made is None else WithMadeOdometry(recording, opening.made, opening.seed)
+    A small file counts as a whole; of a large one its length and pieces from all over it, since bags may have many
+    gigabytes. test_kept_recordings.py.
+    """
+    whole = hashlib.sha256()
+    home = path if path.is_dir() else path.parent
+    for file in files_of(path):
+        size = file.stat().st_size
+        whole.update(f"{file.relative_to(home).as_posix()}\0{size}\0".encode())
+        with file.open("rb") as data:
+            if size <= WHOLE_BYTES:
+                whole.update(data.read())
+                continue
+            for k in range(PIECES):
+                data.seek(k * (size - PIECE_BYTES) // (PIECES - 1))
+                whole.update(data.read(PIECE_BYTES))
+    return whole.hexdigest()
 
 
-def _folder(path: Path, opening: Opening) -> Recording:
-    """What is found in a folder, at whatever depth it begins; of several recordings the one that lies highest."""
-    names = files_in(path)
-    home, opened = _found(path, names)
-    if opened is not None:
-        used = set[str]()
-        recording = opened(home, opening, used)
-        inside = {f"{home.relative_to(path).as_posix()}/{name}".removeprefix("./") for name in used}
-        return Within(recording, path.name, left_over(names, inside, {}))
-    alone = next((name for name in names if name.lower().removesuffix(".gz").endswith(_SINGLE)), None)
-    if alone is not None:
-        return Within(_file(within(path, alone), opening), path.name, left_over(names, {alone}, {}))
-    films = [name for name in names if name.lower().endswith(VIDEOS)]
-    if films and len([name for name in names if name.lower().endswith(PICTURES)]) < 2:
-        film = within(path, films[0])
-        used = {films[0], str(PurePosixPath(films[0]).with_suffix(".csv"))}
-        return Within(_file(film, opening), path.name, left_over(names, used, {}))
-    return open_image_folder(path, opening.rate_hz)
-
-
-Opened = Callable[[Path, Opening, set[str]], Recording]  # used: is filled with the names of the files that are read
-_SINGLE = (".bag", ".clf", ".carmen")
-
-
-def _found(path: Path, names: list[str]) -> tuple[Path, Opened | None]:
-    """Where a recording begins that is known by the names of its files, and what opens it."""
-    found = [
-        (name.count("/"), order, name, opened)
-        for name in names
-        for order, (pattern, opened) in enumerate(_MARKS)
-        if re.fullmatch(pattern, name.rpartition("/")[2])
-    ]
-    if not found:
-        return path, _bag if METADATA in names and (path / METADATA).is_file() else None
-    _, _, name, opened = min(found, key=lambda each: each[:3])
-    return (path / name).parent, opened
-
-
-def _airsim(home: Path, _opening: Opening, used: set[str]) -> Recording:
-    return open_airsim(home, used)
-
-
-def _tub(home: Path, _opening: Opening, used: set[str]) -> Recording:
-    return open_tub(home, used)
-
-
-def _old_tub(home: Path, _opening: Opening, used: set[str]) -> Recording:
-    return open_old_tub(home, used)
-
-
-def _bag(home: Path, opening: Opening, used: set[str]) -> Recording:
-    bag = Bag(home)
-    used |= bag.names
-    return open_ros(home, "bag of ROS 2", bag.packets, opening.topics)
-
-
-_MARKS: tuple[tuple[str, Opened], ...] = (
-    (re.escape(AIRSIM), _airsim),
-    (re.escape(MANIFEST), _tub),
-    (r".*\.catalog", _tub),
-    (r".*\.(db3|mcap)(\.zstd)?", _bag),
-    (r"record_\d+\.json", _old_tub),
-)
-
-
-def _archive(path: Path, opening: Opening) -> Recording:
-    folder, unused = unpack(path)
-    try:
-        return Unpacked(_folder(folder, opening), path.name, folder, unused)
-    except BaseException as error:
-        shutil.rmtree(folder, ignore_errors=True)
-        if isinstance(error, ValueError):
-            raise ValueError(str(error).replace(str(folder), path.name)) from None
-        raise
-
-
-def _file(path: Path, opening: Opening) -> Recording:
-    with open_whole(path):
-        if not has_bag(path) and is_archive(path):
-            return _archive(path, opening)
-    with open_whole(path) as file:
-        try:
-            start = file.read(_LOOK)
-        except (OSError, EOFError, zlib.error) as error:
-            raise ValueError(f"{path.name}: cannot be unpacked: {error}") from None
-    if start.startswith(MCAP):
-        recording, said = open_ros(path, "MCAP", partial(mcap_packets, path), opening.topics), said_of_run(path)
-        return OwnRun(recording, said) if said else recording
-    if start.startswith(BAG):
-        return open_ros(path, "bag of ROS 1", partial(bag_packets, path), opening.topics)
-    if start.startswith(b"SQLite format 3\0") or (start.startswith(ZSTD) and has_bag(path)):
-        return _bag(path, opening, set())
-    if path.name == AIRSIM or path.name == MANIFEST:
-        return _folder(path.parent, opening)
-    if path.suffix.lower() in VIDEOS:
-        return open_video(path)
-    if start.lstrip().startswith(b"{"):
-        return open_scans(path)
-    lines = start.decode("utf-8", errors="replace").splitlines()
-    if path.suffix.lower() in (".log", ".clf", ".carmen") or any(line.startswith((*WORDS, "PARAM ")) for line in lines):
-        return open_carmen(path)
-    raise ValueError(f"{path.name}: not a recording that can be read; expected {READ}")
+def files_of(path: Path) -> list[Path]:
+    """The files of a recording, in the order of their names: those of a folder; or a file and the table beside it."""
+    if not path.is_dir():
+        if path.name in (AIRSIM, MANIFEST):
+            return files_of(path.parent)
+        table = path.with_suffix(".csv")
+        return [path, *([table] if table != path and table.is_file() else [])]
+    return sorted(file for file in path.rglob("*") if file.is_file())

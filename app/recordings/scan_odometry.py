@@ -1,15 +1,7 @@
 """[ours] Odometry of wheels, made better by a laser: each scan is laid over what was seen shortly before.
 
-That is a local map of some scans, not the last scan alone: then errors grow with the way, not with the number of scans.
-test_recorded_motion.py::{test_a_laser_makes_wheels_better,test_errors_do_not_grow_with_the_rate_of_scans}. `ScanRules.local_map`
-off is the plain twin.
-
-What a laser adds to the wheels, each with a switch: off is the plain twin. [ours]
-
-[ours] How a laser moved between two scans: the second is laid over the first. What wheels say is where to begin.
-
-Wheels that slip turn a robot by degrees between two scans; a scan tells the turn to a fraction of one. Point to line, as
-Censi 2008. test_recorded_motion.py::test_a_movement_in_a_room_is_found.
+Wheels that slip turn a robot by degrees between two scans; a scan tells the turn to a fraction of one. What wheels say
+is where to begin. Points are in m, in the frame of the laser.
 """
 
 from __future__ import annotations
@@ -31,18 +23,79 @@ from ratslam_core import Odometry, Pose2, wrap_angle
 @kind("scan rules/1")
 @dataclass(frozen=True, slots=True)
 class ScanRules:
-    """Compared by `python -m benchmarks.recordings --without NAME variants`."""
+    """[ours] What a laser adds to the wheels, each with a switch: off is the plain twin.
+
+    Compared by `python -m benchmarks.recordings --without NAME variants`.
+    """
 
     local_map: bool = True  # a scan is laid over several before it; off: over the one before
-    confirmed: bool = True  # a look counts where the scans agree; off: every look counts, as the gate lets it
-    mutual: bool = (
-        True  # each scan laid over the other must say the same, and nowhere near may fit as well; off: one of them
-    )
+    confirmed: bool = True  # an observation counts where scans agree; off: every one does, as the gate lets it
+    mutual: bool = True  # laid either way, scans must say the same, and no place near fit as well; off: laid one way
     weighed: bool = True  # a match weighs less where walls tell little of a direction; off: all weigh the same
     neighbours: bool = True  # a match far from where the robot believes to be needs a second one; off: one is enough
 
 
-Points = NDArray[np.float64]  # (n, 2), m
+IDENTITY = Pose2(0.0, 0.0, 0.0)
+LEAST_BEAMS = 60  # fewer are sonars
+FARTHEST_M = 20.0  # two beams side by side are too far apart beyond
+KEY_M, KEY_RAD = 0.4, 0.3  # a scan so far from the last one that was kept is kept
+MOST_KEPT, KEPT_M = 8, 2.0  # scans that are kept, and along how much way; from farther off, walls look otherwise
+
+
+def is_laser(about: About) -> bool:
+    """Whether its ranges are a laser's."""
+    return len(about.beam_angles_rad) >= LEAST_BEAMS
+
+
+@kind("scan odometry/2")
+class ScanOdometry:
+    """Lays each scan over a local map of some scans before it: then errors grow with the way, not with the number of
+    scans. `ScanRules.local_map` off, over the last one alone, is the plain twin.
+    test_recorded_motion.py::{test_a_laser_makes_wheels_better,test_errors_do_not_grow_with_the_rate_of_scans}.
+    """
+
+    def __init__(self, about: About, rules: ScanRules | None = None) -> None:
+        self._rules = rules or ScanRules()
+        self._angles = np.array(about.beam_angles_rad)
+        self._limit_m = min(FARTHEST_M, about.range_limit_m or FARTHEST_M)
+        self._at = IDENTITY  # the robot in the frame of the newest scan that was kept
+        self._kept: list[tuple[Pose2, Walls]] = []  # in that frame, the newest last
+        self._walls: Walls | None = None  # all of them
+
+    def better(self, told: Odometry, ranges_m: NDArray[np.float64]) -> Odometry:
+        """The movement that lays this scan over those before, near what the wheels told; that itself where none does."""
+        way, turn = told.speed * told.dt, told.yaw_rate * told.dt
+        if self._walls is not None and way == 0 and turn == 0:
+            return told
+        now = points_of(ranges_m, self._angles, self._limit_m)
+        before = self._at
+        self._at = before.compose(_along(way, turn))
+        found = None if self._walls is None else self._walls.match(now, self._at)
+        if found is not None:
+            moved = before.inverse().compose(found.pose)
+            turn = moved.heading_rad
+            way = moved.x * math.cos(turn / 2) + moved.y * math.sin(turn / 2)
+            self._at = before.compose(_along(way, turn))  # wheels do not slip sideways
+        if self._walls is None or self._is_new():
+            self._keep(Walls(now))
+        return told if found is None else Odometry(way / told.dt, turn / told.dt, told.dt)
+
+    def _is_new(self) -> bool:
+        far = math.hypot(self._at.x, self._at.y) > KEY_M or abs(self._at.heading_rad) > KEY_RAD
+        return far or not self._rules.local_map
+
+    def _keep(self, walls: Walls) -> None:
+        back = self._at.inverse()
+        kept = [(back.compose(at), each) for at, each in self._kept]
+        near = [(at, each) for at, each in kept if math.hypot(at.x, at.y) < KEPT_M]
+        self._kept = [*near[1 - MOST_KEPT :], (IDENTITY, walls)] if self._rules.local_map else [(IDENTITY, walls)]
+        self._walls = Walls.joined(self._kept)
+        self._at = IDENTITY
+
+
+def _along(way: float, turn: float) -> Pose2:
+    return Pose2(way * math.cos(turn / 2), way * math.sin(turn / 2), turn)
+
 
 STARTS_RAD = tuple(math.radians(d) for d in (0, -8, 8, -16, 16))  # added to the turn of the wheels
 SPACING_M = 0.5  # between the places from which it begins
@@ -56,11 +109,7 @@ SPLIT = 0.3  # share of the range by which two beams side by side may differ and
 SAME_M, SAME_RAD = 0.15, 0.05  # of two matches that say the same
 DOUBT = (1e-2, 1e-2, 1e-3)  # a point: where all walls are parallel, a scan stays where the wheels put it
 
-
-def alike(a: Pose2, b: Pose2, times: float = 1.0) -> bool:
-    """Whether two matches say the same, or so many times the error of that."""
-    near = math.hypot(a.x - b.x, a.y - b.y) < times * SAME_M
-    return near and abs(wrap_angle(a.heading_rad - b.heading_rad)) < times * SAME_RAD
+Points = NDArray[np.float64]  # (n, 2), m
 
 
 class Match(NamedTuple):
@@ -69,38 +118,26 @@ class Match(NamedTuple):
     pose: Pose2
     fits: float  # share of its points on walls, less how far off they are
     rival: float  # `fits` of the best place elsewhere, if it was looked for
-    holds: (
-        float  # 0 to 0.5: how much of the walls lies across the direction that they tell least of; 0 in a bare corridor
-    )
+    holds: float  # 0 (a bare corridor) to 0.5: how much of the walls lies across the direction they tell least of
 
 
-def points_of(ranges_m: NDArray[np.float64], angles_rad: NDArray[np.float64], limit_m: float) -> Points:
-    """Where the beams end, in the frame of the laser; those that end nowhere are left out."""
-    ends = np.isfinite(ranges_m) & (ranges_m > 0) & (ranges_m < limit_m)
-    r, a = ranges_m[ends], angles_rad[ends]
-    return np.stack([r * np.cos(a), r * np.sin(a)], axis=1)
-
-
-def normals_of(points: Points) -> tuple[Points, Points]:
-    """Points with the direction across the wall that they and their neighbours lie on, (n, 2) each."""
-    if len(points) < 3:
-        return points[:0], points[:0]
-    gap = SPLIT * np.hypot(points[:, 0], points[:, 1]) + 0.05
-    step = np.hypot(*np.diff(points, axis=0).T)
-    k = 1 + np.flatnonzero((step[:-1] < gap[1:-1]) & (step[1:] < gap[1:-1]))
-    along = points[k + 1] - points[k - 1]
-    along = along / np.maximum(np.hypot(along[:, 0], along[:, 1]), 1e-9)[:, None]
-    return points[k], np.stack([-along[:, 1], along[:, 0]], axis=1)
+def alike(a: Pose2, b: Pose2, times: float = 1.0) -> bool:
+    """Whether two matches say the same, or so many times the error of that."""
+    near = math.hypot(a.x - b.x, a.y - b.y) < times * SAME_M
+    return near and abs(wrap_angle(a.heading_rad - b.heading_rad)) < times * SAME_RAD
 
 
 @kind("walls/1")
 class Walls:
-    """Points on walls, with the directions across them, over which scans are laid."""
+    """Points on walls, with the directions across them, over which scans are laid: point to line, as Censi 2008.
+
+    test_recorded_motion.py::test_a_movement_in_a_room_is_found.
+    """
 
     def __init__(self, points: Points, normals: Points | None = None) -> None:
         """points: a scan, beam by beam; or with their normals, any points."""
         if normals is None:
-            points, normals = normals_of(points)
+            points, normals = _normals_of(points)
         self.points, self.normals = points, normals
         low = points.min(axis=0, initial=0.0) - NEAR
         columns, rows = (int(n) + 3 for n in (points.max(axis=0, initial=0.0) - low) // NEAR)
@@ -163,6 +200,25 @@ class Walls:
         return Match(Pose2(x, y, wrap_angle(heading)), fits, 0.0, holds)
 
 
+def points_of(ranges_m: NDArray[np.float64], angles_rad: NDArray[np.float64], limit_m: float) -> Points:
+    """Where the beams end, in the frame of the laser; those that end nowhere are left out."""
+    ends = np.isfinite(ranges_m) & (ranges_m > 0) & (ranges_m < limit_m)
+    r, a = ranges_m[ends], angles_rad[ends]
+    return np.stack([r * np.cos(a), r * np.sin(a)], axis=1)
+
+
+def _normals_of(points: Points) -> tuple[Points, Points]:
+    """Points with the direction across the wall that they and their neighbours lie on, (n, 2) each."""
+    if len(points) < 3:
+        return points[:0], points[:0]
+    gap = SPLIT * np.hypot(points[:, 0], points[:, 1]) + 0.05
+    step = np.hypot(*np.diff(points, axis=0).T)
+    k = 1 + np.flatnonzero((step[:-1] < gap[1:-1]) & (step[1:] < gap[1:-1]))
+    along = points[k + 1] - points[k - 1]
+    along = along / np.maximum(np.hypot(along[:, 0], along[:, 1]), 1e-9)[:, None]
+    return points[k], np.stack([-along[:, 1], along[:, 0]], axis=1)
+
+
 def _around(reach_m: float) -> list[tuple[float, float]]:
     n = math.ceil(reach_m / SPACING_M)
     return [(SPACING_M * i, SPACING_M * j) for i in range(-n, n + 1) for j in range(-n, n + 1)]
@@ -219,62 +275,3 @@ def _settle(
         step = np.linalg.solve(h, g)
         x, y, heading = x + step[0], y + step[1], heading + step[2]
     return fits, holds, x, y, heading
-
-
-IDENTITY = Pose2(0.0, 0.0, 0.0)
-LEAST_BEAMS = 60  # fewer are sonars
-FARTHEST_M = 20.0  # two beams side by side are too far apart beyond
-KEY_M, KEY_RAD = 0.4, 0.3  # a scan so far from the last one that was kept is kept
-MOST_KEPT, KEPT_M = 8, 2.0  # scans that are kept, and along how much way; from farther off, walls look otherwise
-
-
-def is_laser(about: About) -> bool:
-    """Whether its ranges are a laser's."""
-    return len(about.beam_angles_rad) >= LEAST_BEAMS
-
-
-@kind("scan odometry/2")
-class ScanOdometry:
-    """Remembers the scans before."""
-
-    def __init__(self, about: About, rules: ScanRules | None = None) -> None:
-        self._rules = rules or ScanRules()
-        self._angles = np.array(about.beam_angles_rad)
-        self._limit_m = min(FARTHEST_M, about.range_limit_m or FARTHEST_M)
-        self._at = IDENTITY  # the robot in the frame of the newest scan that was kept
-        self._kept: list[tuple[Pose2, Walls]] = []  # in that frame, the newest last
-        self._walls: Walls | None = None  # all of them
-
-    def better(self, told: Odometry, ranges_m: NDArray[np.float64]) -> Odometry:
-        """The movement that lays this scan over those before, near what the wheels told; that itself where none does."""
-        way, turn = told.speed * told.dt, told.yaw_rate * told.dt
-        if self._walls is not None and way == 0 and turn == 0:
-            return told
-        now = points_of(ranges_m, self._angles, self._limit_m)
-        before = self._at
-        self._at = before.compose(_along(way, turn))
-        found = None if self._walls is None else self._walls.match(now, self._at)
-        if found is not None:
-            moved = before.inverse().compose(found.pose)
-            turn = moved.heading_rad
-            way = moved.x * math.cos(turn / 2) + moved.y * math.sin(turn / 2)
-            self._at = before.compose(_along(way, turn))  # wheels do not slip sideways
-        if self._walls is None or self._is_new():
-            self._keep(Walls(now))
-        return told if found is None else Odometry(way / told.dt, turn / told.dt, told.dt)
-
-    def _is_new(self) -> bool:
-        far = math.hypot(self._at.x, self._at.y) > KEY_M or abs(self._at.heading_rad) > KEY_RAD
-        return far or not self._rules.local_map
-
-    def _keep(self, walls: Walls) -> None:
-        back = self._at.inverse()
-        kept = [(back.compose(at), each) for at, each in self._kept]
-        near = [(at, each) for at, each in kept if math.hypot(at.x, at.y) < KEPT_M]
-        self._kept = [*near[1 - MOST_KEPT :], (IDENTITY, walls)] if self._rules.local_map else [(IDENTITY, walls)]
-        self._walls = Walls.joined(self._kept)
-        self._at = IDENTITY
-
-
-def _along(way: float, turn: float) -> Pose2:
-    return Pose2(way * math.cos(turn / 2), way * math.sin(turn / 2), turn)

@@ -1,10 +1,9 @@
 """The first start. numba compiles each kernel at its first call and caches it on disk. All kernels together take half a
 minute of one core, so separate processes compile them side by side and report their progress.
 
-Uses parts of the program for a moment, so that numba compiles their kernels and caches them on disk.
-
-Called with the names of parts, it compiles each part in a process of its own, forked when everything has been
-imported. It prints an empty line for each kernel. Nothing else depends on what is computed here.
+Called with the names of parts, this module is the first of these processes: it uses each part of the program for a moment in
+one of its own, forked when everything has been imported, and prints an empty line for each kernel. Nothing else depends on
+what is computed here.
 """
 
 from __future__ import annotations
@@ -22,7 +21,7 @@ from types import ModuleType
 from typing import Any
 
 import numpy as np
-from numba.core import config
+from numba.core import config as numba_config
 from numba.core.dispatcher import Dispatcher
 from numba.core.event import Event, Listener, register  # pyright: ignore[reportUnknownVariableType]
 
@@ -72,22 +71,88 @@ from ratslam_core.pose_graph.experiences import Experiences
 from ratslam_live import command_of
 from sim2d import SONAR_ANGLES_RAD, Drive, Simulator, load_world
 
-ANGLES = np.array(SONAR_ANGLES_RAD)
-RANGES = np.full(len(ANGLES), 2.0)
+WORDS = "compiling the engine for this machine, once"
+
+_ANGLES = np.array(SONAR_ANGLES_RAD)
+_RANGES = np.full(len(_ANGLES), 2.0)
+
+
+class Compiling:
+    """Begins at once to compile the parts whose kernels are not on disk. A part that fails is compiled when used."""
+
+    def __init__(self) -> None:
+        if kernel_cache.words:
+            print(f"ratslam: {kernel_cache.words}", file=sys.stderr)
+        keeps = not (kernel_cache.in_memory or numba_config.DISABLE_JIT)  # pyright: ignore[reportAttributeAccessIssue,reportUnknownMemberType]
+        missing = [part for part, (_, modules) in PARTS.items() if keeps and not all(map(is_compiled, modules))]
+        self._process = _process(missing) if missing else None
+
+    def __bool__(self) -> bool:
+        """Whether there was anything to do."""
+        return self._process is not None
+
+    def wait(self, tell: Callable[[str], None]) -> None:
+        """Wait until everything is compiled or `stop` is called. tell: is given the progress in words."""
+        if self._process is None:
+            return
+        assert self._process.stdout is not None
+        for done, _ in enumerate(self._process.stdout, start=1):
+            tell(f"{WORDS}: {done} {'function' if done == 1 else 'functions'} done")
+        if sys.stderr.isatty():
+            print(file=sys.stderr)
+
+    def stop(self) -> None:
+        """End it at once. What has been compiled is kept, and `wait` returns."""
+        if self._process is not None and self._process.poll() is None:
+            os.killpg(self._process.pid, signal.SIGKILL)
+            self._process.wait()
+
+
+def _process(parts: list[str]) -> subprocess.Popen[str]:
+    """The compiling process. It leads a process group of its own, so that its children can be ended with it."""
+    return subprocess.Popen(
+        command_of("app.startup.compiling", *parts),
+        stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, process_group=0,
+    )  # fmt: skip
+
+
+def say_how_far(words: str) -> None:
+    """Show progress on one line of a terminal. Nothing is written to a log file, where it would take many lines."""
+    if sys.stderr.isatty():
+        print(f"\r{words} ", end="", file=sys.stderr, flush=True)
+
+
+def is_compiled(module: ModuleType) -> bool:
+    """Whether numba has cached a kernel of this module that is not older than the source."""
+    source = Path(str(module.__file__))
+    return any(index.stat().st_mtime >= source.stat().st_mtime for index in kept(module))
+
+
+def kept(module: ModuleType) -> list[Path]:
+    """Where numba keeps what it knows of the kernels of this module."""
+    items: list[Any] = [item for item in vars(module).values() if isinstance(item, Dispatcher)]
+    kernel = next(item for item in items if item.py_func.__module__ == module.__name__)
+    return [*Path(str(kernel.stats.cache_path)).glob(f"{Path(str(module.__file__)).stem}.*.nbi")]
+
+
+def date(modules: Iterable[ModuleType]) -> None:
+    """Their kernels fit their sources as they are now: numba goes by the text, and `is_compiled` by dates alone."""
+    for index in chain.from_iterable(map(kept, modules)):
+        index.touch()
 
 
 def office() -> None:
     """The simulator, and the pilot's local movement."""
     config = Config()
     simulator = Simulator(load_world(), config.robot, 1, config.office)
-    pilot = Pilot(config.pilot, ANGLES, np.random.default_rng(1))
+    pilot = Pilot(config.pilot, _ANGLES, np.random.default_rng(1))
     cells = config.pose_cells
     nowhere = ExperienceMap((cells.n_theta, cells.n_y, cells.n_x), cells.cell_m, config.experience_map)
     frame = simulator.observe()
     Coverage().follow(simulator.free_space, np.zeros((1, 2)))
-    local = LocalMovement(ANGLES, config.pilot.echo_s)
+    local = LocalMovement(_ANGLES, config.pilot.echo_s)
     local.free_way(0.0, config.pilot)
-    local.sense(np.full(len(ANGLES), 0.2, np.float32), Odometry(0.0, 0.0, 0.1), config.pilot)
+    local.sense(np.full(len(_ANGLES), 0.2, np.float32), Odometry(0.0, 0.0, 0.1), config.pilot)
     local.gap_towards(1.0, 0.2, config.pilot)
     for _ in range(50):
         odometry = Odometry(frame.odometry_speed, frame.odometry_yaw_rate, frame.dt)
@@ -102,9 +167,9 @@ def cells() -> None:
     pose_cells, jump = PoseCells(config.pose_cells), ScanChange()
     images = rng.integers(0, 256, (4, 8, 12), dtype=np.uint8).repeat(6, axis=1).repeat(6, axis=2)
     for k in range(60):
-        seen = local_view.observe(images[k // 5 % 4], None, RANGES, 0.02)
+        seen = local_view.observe(images[k // 5 % 4], None, _RANGES, 0.02)
         local_view.difference_to(0)
-        jump.observe(RANGES + k % 2)
+        jump.observe(_RANGES + k % 2)
         pose_cells.integrate(0.03, 0.02)
         links.learn(seen.view, *pose_cells.active, pose_cells.slot, config.local_view.learning_rate)
         where, strength = links.recall(seen.view)
@@ -123,11 +188,11 @@ def maps() -> None:
     cells = config.pose_cells
     shape = (cells.n_theta, cells.n_y, cells.n_x)
     goals = GoalMemory(config.goal_memory, shape, cells.cell_m)
-    grid = OccupancyGrid(shape, cells.cell_m, ANGLES)
-    pictures = MapGrid(ANGLES)
+    grid = OccupancyGrid(shape, cells.cell_m, _ANGLES)
+    pictures = MapGrid(_ANGLES)
     for k in range(10):
-        grid.update(Packet(k % 5 * 4.0, 4.0, 0.0, 1.0), RANGES)
-        pictures.add(k, Pose2(0.0, 0.0, 0.0), RANGES)
+        grid.update(Packet(k % 5 * 4.0, 4.0, 0.0, 1.0), _RANGES)
+        pictures.add(k, Pose2(0.0, 0.0, 0.0), _RANGES)
     blob = np.zeros((64, 4), np.int32)
     for k in range(3):  # more links than there is room for at first: compiles the growth
         blob[:, X], blob[:, Y] = np.arange(64) % 8 + 8 * k, np.arange(64) // 8
@@ -155,22 +220,21 @@ def loops() -> None:
     made.temporal_map.times_to(0)  # is mended now
     rng, seen_by = np.random.default_rng(1), LocalView(config.local_view)
     for _ in range(20):
-        seen_by.observe(rng.integers(0, 256, (48, 64), np.uint8), None, RANGES)
+        seen_by.observe(rng.integers(0, 256, (48, 64), np.uint8), None, _RANGES)
     made.params = config.experience_map
     made.declare_kidnapped()
     for _ in range(3):
         made.evidence.move(Odometry(0.3, 0.1, 0.1))
         made.evidence.observe(made, seen_by, made.islands.current)
     ratslam_core.extensions.evidence.nats(0.5, 0)
-    local = LocalMovement(ANGLES, config.pilot.echo_s)
+    local = LocalMovement(_ANGLES, config.pilot.echo_s)
     RouteFollower(0, Bars()).step(made, local, 0.1, config.pilot)
     find_places(made)
 
 
 # With each part, the modules whose kernels it compiles last: once these are on disk, the whole part is.
 PARTS: dict[str, tuple[Callable[[], None], tuple[Any, ...]]] = {
-    "office": (office, (sim2d.geometry.grid_cells, sim2d.geometry.grid_cells, sim2d.camera.painting, sim2d.sensors.ranges,
-                        app.pilot.local_movement)),
+    "office": (office, (sim2d.geometry.grid_cells, sim2d.camera.painting, sim2d.sensors.ranges, app.pilot.local_movement)),
     "cells": (cells, (ratslam_core.pose_cells.activity_kernels, ratslam_core.pose_cells.attractor_kernels,
                       ratslam_core.pose_cells.packet_kernels,
                       ratslam_core.local_view.front_ends.image_and_sonars, ratslam_core.local_view.echo_matcher,
@@ -179,19 +243,6 @@ PARTS: dict[str, tuple[Callable[[], None], tuple[Any, ...]]] = {
                       ratslam_core.extensions.evidence, ratslam_core.experience_map.places)),
     "maps": (maps, (ratslam_core.goal_memory, ratslam_core.occupancy_grid)),
 }  # fmt: skip
-
-
-def kept(module: ModuleType) -> list[Path]:
-    """Where numba keeps what it knows of the kernels of this module."""
-    items: list[Any] = [item for item in vars(module).values() if isinstance(item, Dispatcher)]
-    kernel = next(item for item in items if item.py_func.__module__ == module.__name__)
-    return [*Path(str(kernel.stats.cache_path)).glob(f"{Path(str(module.__file__)).stem}.*.nbi")]
-
-
-def date(modules: Iterable[ModuleType]) -> None:
-    """Their kernels fit their sources as they are now: numba goes by the text, and `is_compiled` by dates alone."""
-    for index in chain.from_iterable(map(kept, modules)):
-        index.touch()
 
 
 class _Count(Listener):
@@ -221,57 +272,3 @@ if __name__ == "__main__":
     else:
         for _ in sys.argv[1:]:
             os.wait()
-
-
-WORDS = "compiling the engine for this machine, once"
-
-
-class Compiling:
-    """Begins at once to compile the parts whose kernels are not on disk. A part that fails is compiled when used."""
-
-    def __init__(self) -> None:
-        if kernel_cache.words:
-            print(f"ratslam: {kernel_cache.words}", file=sys.stderr)
-        keeps = not (kernel_cache.in_memory or config.DISABLE_JIT)  # pyright: ignore[reportAttributeAccessIssue,reportUnknownMemberType]
-        missing = [part for part, (_, modules) in PARTS.items() if keeps and not all(map(is_compiled, modules))]
-        self._process = _process(missing) if missing else None
-
-    def __bool__(self) -> bool:
-        """Whether there was anything to do."""
-        return self._process is not None
-
-    def wait(self, tell: Callable[[str], None]) -> None:
-        """Wait until everything is compiled or `stop` is called. tell: is given the progress in words."""
-        if self._process is None:
-            return
-        assert self._process.stdout is not None
-        for done, _ in enumerate(self._process.stdout, start=1):
-            tell(f"{WORDS}: {done} {'function' if done == 1 else 'functions'} done")
-        if sys.stderr.isatty():
-            print(file=sys.stderr)
-
-    def stop(self) -> None:
-        """End it at once. What has been compiled is kept, and `wait` returns."""
-        if self._process is not None and self._process.poll() is None:
-            os.killpg(self._process.pid, signal.SIGKILL)
-            self._process.wait()
-
-
-def say_how_far(words: str) -> None:
-    """Show progress on one line of a terminal. Nothing is written to a log file, where it would take many lines."""
-    if sys.stderr.isatty():
-        print(f"\r{words} ", end="", file=sys.stderr, flush=True)
-
-
-def is_compiled(module: ModuleType) -> bool:
-    """Whether numba has cached a kernel of this module that is not older than the source."""
-    source = Path(str(module.__file__))
-    return any(index.stat().st_mtime >= source.stat().st_mtime for index in kept(module))
-
-
-def _process(parts: list[str]) -> subprocess.Popen[str]:
-    """The compiling process. It leads a process group of its own, so that its children can be ended with it."""
-    return subprocess.Popen(
-        command_of("app.startup.compiling", *parts),
-        stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, process_group=0,
-    )  # fmt: skip

@@ -1,9 +1,4 @@
-"""Arrays that a snapshot shares with other threads are read-only.
-
-Expensive parts of a snapshot are rebuilt only as often as people can see a change.
-
-The angle by which the map is drawn turned, to lie like the office. For people only; the robot never learns it.
-"""
+"""What views have in common: read-only arrays, parts that are rebuilt seldom, and the angle by which maps are drawn."""
 
 from __future__ import annotations
 
@@ -23,17 +18,18 @@ Kind = TypeVar("Kind", bound=np.generic)
 
 
 def frozen(array: NDArray[Kind]) -> NDArray[Kind]:
-    """The same array, read-only from now on."""
+    """The same array, read-only from now on, since a snapshot shares it with other threads."""
     array.setflags(write=False)
     return array
 
 
 REST = 30.0  # a part is built again only after this many times the time it took to build: a large map costs 3 % at most
+
 Part = TypeVar("Part")
 
 
 class Slow(Generic[Part]):
-    """An expensive part, rebuilt when the session has moved on and enough time has passed."""
+    """An expensive part of a snapshot: when the session has moved on, rebuilt as often as people can see a change."""
 
     def __init__(self, every_s: float, build: Callable[[], Part]) -> None:
         self.due = -math.inf
@@ -55,14 +51,12 @@ class Slow(Generic[Part]):
 
 
 SPREAD_M = 1.0  # RMS distance of the path from its middle; a path with less hardly has a direction
-CALM_RAD = math.radians(
-    3.0
-)  # smaller changes are ignored, so that a map under correction does not make the plate swing
+CALM_RAD = math.radians(3.0)  # smaller changes are ignored: a map under correction does not make the plate swing
 
 
 def map_turn(shown_rad: float | None, evaluation: Evaluation, experiences: ExperienceMap, truth: Truth | None) -> float:
-    """The angle (rad) of the map's frame in the office's frame; still `shown_rad` while that is near enough. 0 without
-    truth."""
+    """The angle (rad) of the map's frame in the office's, by which it is drawn turned to lie like the office; still
+    `shown_rad` while that is near enough. 0 without truth. For people only; the robot never learns it."""
     if truth is None:
         return shown_rad or 0.0
     true, mapped, _ = evaluation.trajectories(experiences)

@@ -1,10 +1,4 @@
-"""How sure the robot is of its place, where else it may be, and what it let go.
-
-[ours] How far off the robot may be, as an ellipse around its estimate: by the pose filter, which weighs looks against
-odometry; by the rules of the papers, which have none, from the spread of the winning packet. test_judged_views.py checks both.
-
-What spoke for the place that a robot believes, and what against it, observation by observation, for people to see.
-"""
+"""How sure the robot is of its place, where else it may be, and what spoke for that. Poses in m and rad, map frame."""
 
 from __future__ import annotations
 
@@ -53,7 +47,7 @@ def possible_places(map_: ExperienceMap) -> NDArray[np.float64]:
 
 
 def other_places(map_: ExperienceMap) -> tuple[Hypothesis, ...]:
-    """Where a robot that was carried, or is in doubt, may be instead of where it believes itself to be, the likeliest first."""
+    """Where a robot that was carried or is in doubt may be instead of where it believes to be, the likeliest first."""
     rows, beside = map_.evidence.weighed(map_.robot_here)
     if not len(rows) or not (map_.carried or map_.evidence.in_doubt):
         return ()
@@ -71,7 +65,7 @@ def other_places(map_: ExperienceMap) -> tuple[Hypothesis, ...]:
 
 
 def state_of(map_: ExperienceMap, place: Pose2, submap: int) -> tuple[float, float, float] | None:
-    """The state of the pose cells of the nearest experience of this submap, moved by as much as the place is beside it."""
+    """The state of the pose cells of the submap's nearest experience, moved by as much as the place is beside it."""
     own = np.flatnonzero(map_.island_of == submap)
     apart = np.hypot(map_.poses[own, 0] - place.x, map_.poses[own, 1] - place.y)
     if not len(own) or apart.min() > HELD_M:
@@ -88,7 +82,9 @@ REACH = 6  # cells from the packet's centre: what is farther away belongs to ano
 
 
 def spread_of(session: Session) -> Spread | None:
-    """None without a map: nothing would be there to draw it on."""
+    """[ours] How far off the robot may be, as an ellipse around its estimate: by the pose filter, which weighs
+    observations against odometry; by the rules of the papers, which have none, from the spread of the winning packet.
+    None without a map: nothing would be there to draw it on. test_judged_views.py checks both."""
     map_ = session.brain.experience_map
     if isinstance(map_, CellsOnly):
         return None
@@ -99,7 +95,7 @@ def spread_of(session: Session) -> Spread | None:
 
 
 def packet_spread(session: Session) -> Spread:
-    """The ellipse of the winner's activity in x', y', turned from the cells' frame into the map's by the robot's two headings."""
+    """The covariance of the winner's activity in x', y', turned into the map's frame by the robot's two headings."""
     brain = session.brain
     cells, values = brain.pose_cells.active
     packet, (_, n_y, n_x) = brain.pose_cells.winner, brain.pose_cells.shape
@@ -127,13 +123,13 @@ BARS = 24
 
 
 class SpokenFor:
-    """Call `watch` after each tick."""
+    """What spoke for the place that a robot believes, and what against it. Call `watch` after each tick."""
 
     def __init__(self) -> None:
         self._kept: deque[tuple[float, NDArray[np.float64]]] = deque(maxlen=MOST_TICKS)
 
     def watch(self, time_s: float, map_: ExperienceMap) -> None:
-        """Keep the hypotheses of this tick; none once the map is one again, so that the next time begins anew."""
+        """Keep the hypotheses of this tick; none once the submaps are merged, so that the next time begins anew."""
         if map_.carried:
             self._kept.append((time_s, map_.evidence.hypotheses[:, [X, Y, HEADING, ODDS]].copy()))
         else:

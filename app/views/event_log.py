@@ -1,9 +1,4 @@
-"""Events: the marks on the timeline.
-
-Loop closures with the map before and after each of them, so that a correction can be marked and played again slowly.
-
-Kept beside the events, since they belong to what has happened. Nothing of it is read by the session.
-"""
+"""Events, the marks on the timeline, and what is kept beside them for people. Nothing of it is read by the session."""
 
 from __future__ import annotations
 
@@ -21,7 +16,7 @@ MOST_EVENTS = 2000
 
 
 class EventLog:
-    """Keeps the newest events."""
+    """Keeps the newest events, and with them why they happened and what they did to the map."""
 
     def __init__(self, session: Session) -> None:
         self._session = session
@@ -47,8 +42,8 @@ class EventLog:
         return event
 
     def until(self, time_s: float, session: Session) -> EventLog:
-        """Another log, of this session, with the events up to the end of the tick at this simulated time, without those of
-        the orders after it."""
+        """Another log, of this session, with the events up to the end of the tick at this simulated time, without
+        those of the orders after it."""
         cut = EventLog(session)
         known = sorted((*self._counted, *self.events), key=lambda event: event.number)
         known = [event for event in known if self._is_before(event, time_s)]
@@ -67,17 +62,18 @@ class EventLog:
         return event.time_s < time_s
 
 
-SETTLES_S = (
-    15.0  # a map is solved every 5 s: after three of them, or at the next closure, its correction counts as over
-)
+SETTLES_S = 15.0  # a map is solved every 5 s: after three times, or at the next closure, its correction is over
 EVERY_S = 1.0  # how often the map after a closure is taken anew until then
 MOST = 12  # closures are kept
 
-Places = NDArray[np.float32]  # (n, 2), map frame
+_Places = NDArray[np.float32]  # (n, 2), map frame
 
 
 class Closures:
-    """Call `watch` after each tick, and `closed` when a loop has closed in it."""
+    """Loop closures with the map before and after each, so that a correction can be marked and played again slowly.
+
+    Call `watch` after each tick, and `closed` when a loop has closed in it.
+    """
 
     def __init__(self, session: Session, log: EventLog) -> None:
         self._session, self._log = session, log
@@ -107,5 +103,5 @@ class Closures:
         moved = float(np.hypot(*(after - before).T).max(initial=0.0))
         self._log.closures = (*self._log.closures[:-1], replace(closure, after_xy=after, moved_m=moved))
 
-    def _places(self) -> Places:
+    def _places(self) -> _Places:
         return frozen(self._session.brain.experience_map.poses[:, :2].astype(np.float32))

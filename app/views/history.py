@@ -1,13 +1,4 @@
-"""What has happened in a run so far, for people to look at. It watches the session and never changes it.
-
-The recent paths of the robot (true) and of the winning packet.
-
-When each experience and each view was first and last active, and how often it became active.
-
-Errors and counts over time, and the turn of the map. The longer the run, the less often they are sampled.
-
-What is kept of a second brain for people to look at: its packet's path, its last snap, its errors.
-"""
+"""What has happened in a run so far, for people to look at. It watches the session and never changes it."""
 
 from __future__ import annotations
 
@@ -31,9 +22,51 @@ RECORDED_S = 1800.0  # of a recording with truth, which has no office beside its
 STILL_M, STILL_CELLS = 0.005, 0.02  # smaller movements add no point
 
 
+@kind("history/1")
+class History:
+    """Call `watch` after each tick."""
+
+    CACHES = ("log", "_session")
+
+    def __init__(self, session: Session) -> None:
+        self._session, self.log = session, EventLog(session)
+        self.events = EventWatch(session, self.log)
+        self.trails, self.visits, self.series = Trails(session), VisitLog(session), RunSeries(session)
+        self.beside: BesideHistory | None = None  # of the second brain, while there is one
+
+    def settle(self, session: Session, log: EventLog, last_snap: Snap | None) -> None:
+        """Go on in a history that was restored with this session. Its events are noted in this log."""
+        self._session, self.log = session, log
+        if self.beside is not None:
+            self.beside.settle()
+        self.events.settle(session, log, last_snap)
+        for part in (self.trails, self.visits, self.series):
+            part.settle(session)
+
+    def watch(self) -> None:
+        self.log.of_tick = True
+        for part in (self.trails, self.visits, self.events, self.series):
+            part.watch()
+        self.watch_companion()
+        if self.beside is not None:
+            self.beside.watch(self._session)
+        self.log.of_tick = False
+
+    def watch_companion(self) -> None:
+        """To be called when there is another second brain, too, so that it is shown before the next tick."""
+        companion = self._session.companion
+        if companion is None:
+            self.beside = None
+        elif self.beside is None or self.beside.of is not companion:
+            self.beside = BesideHistory(self._session, companion)
+
+
 @kind("trails/1")
 class Trails:
-    """Call `watch` after each tick. A trail is the same object as long as nothing is added to it."""
+    """The recent paths of the robot (true) and of the winning packet.
+
+    Call `watch` after each tick. A trail is the same object as long as nothing is added to it.
+    """
 
     CACHES = ("_session",)
 
@@ -53,19 +86,43 @@ class Trails:
         if session.tick_count % 2 == 0:
             truth, packet = session.truth, session.estimate.packet
             if truth is not None:
-                self.robot = grown(self.robot, (truth.x, truth.y), self._most, STILL_M)
-            self.packet = grown(self.packet, (packet.x, packet.y, packet.heading_rad), self._most, STILL_CELLS)
+                self.robot = _grown(self.robot, (truth.x, truth.y), self._most, STILL_M)
+            self.packet = _grown(self.packet, (packet.x, packet.y, packet.heading_rad), self._most, STILL_CELLS)
 
 
 def _no_points(columns: int) -> NDArray[np.float32]:
     return frozen(np.zeros((0, columns), np.float32))
 
 
-def grown(path: NDArray[np.float32], point: tuple[float, ...], most: int, still: float) -> NDArray[np.float32]:
+def _grown(path: NDArray[np.float32], point: tuple[float, ...], most: int, still: float) -> NDArray[np.float32]:
     """`path` with `point` added, the last `most` points; `path` itself if the point is within `still` of its end."""
     if len(path) and math.dist(path[-1].tolist(), point) < still:
         return path
     return frozen(np.vstack([path[max(0, len(path) + 1 - most) :], np.array([point], np.float32)]))
+
+
+@kind("visit_log/1")
+class VisitLog:
+    """When each experience and each view was first and last active, and how often it became active.
+
+    Call `watch` after each tick.
+    """
+
+    CACHES = ("_session",)
+
+    def __init__(self, session: Session) -> None:
+        self._session = session
+        self.experiences, self.views = Visits(), Visits()
+        self.watch()
+
+    def settle(self, session: Session) -> None:
+        """Go on in a history that was restored."""
+        self._session = session
+
+    def watch(self) -> None:
+        session = self._session
+        self.experiences.note(session.brain.experience_map.active, session.time_s)
+        self.views.note(session.estimate.recognition.view, session.time_s)
 
 
 @kind("visits/1")
@@ -101,34 +158,16 @@ class Visits:
         return Times(float(self._first_s[number]), float(self._last_s[number]), int(self._count[number]))
 
 
-@kind("visit_log/1")
-class VisitLog:
-    """Call `watch` after each tick."""
-
-    CACHES = ("_session",)
-
-    def __init__(self, session: Session) -> None:
-        self._session = session
-        self.experiences, self.views = Visits(), Visits()
-        self.watch()
-
-    def settle(self, session: Session) -> None:
-        """Go on in a history that was restored."""
-        self._session = session
-
-    def watch(self) -> None:
-        session = self._session
-        self.experiences.note(session.brain.experience_map.active, session.time_s)
-        self.views.note(session.estimate.recognition.view, session.time_s)
-
-
 SERIES_POINTS = 600
 ERROR_POINTS = 1000
 
 
 @kind("run_series/1")
 class RunSeries:
-    """Call `watch` after each tick."""
+    """Errors and counts over time, and the turn of the map. The longer the run, the less often they are sampled.
+
+    Call `watch` after each tick.
+    """
 
     CACHES = ("_session", "series")
 
@@ -173,8 +212,7 @@ class RunSeries:
         self.map_turn_rad = self._turn(self.map_turn_rad)
         views, experiences = len(brain.local_view), len(brain.experience_map)
         metres, radians = brain.experience_map.residual
-        residual = 1000 * metres, 1000 * radians
-        sample = session.time_s, *errors, views, experiences, *residual
+        sample = session.time_s, *errors, views, experiences, 1000 * metres, 1000 * radians
         self._samples = np.vstack([self._samples, sample])
         if len(self._samples) > SERIES_POINTS:
             self._samples = self._samples[::2]
@@ -190,12 +228,12 @@ EVERY_S = 1.0  # simulated time between two measurements of the errors
 
 @kind("beside_history/1")
 class BesideHistory:
-    """Call `watch` after each tick."""
+    """What is kept of a second brain: its packet's path, its last snap, its errors. Call `watch` after each tick."""
 
     def __init__(self, session: Session, companion: Companion) -> None:
         self.of = companion
         self._most = int(TRAIL_S / session.frame.dt) // 2
-        self.path: NDArray[np.float32] = frozen(np.zeros((0, 3), np.float32))  # of the winning packet, as in `Trails`
+        self.path = _no_points(3)  # of the winning packet, as in `Trails`
         self.last_snap: tuple[float, Packet, Packet] | None = None  # when, from, to
         self._before: Packet | None = None
         self.error_map_m: float | None = None
@@ -214,7 +252,7 @@ class BesideHistory:
             self.last_snap = session.time_s, self._before, packet
         self._before = packet
         if session.tick_count % 2 == 0:
-            self.path = grown(self.path, (packet.x, packet.y, packet.heading_rad), self._most, STILL_CELLS)
+            self.path = _grown(self.path, (packet.x, packet.y, packet.heading_rad), self._most, STILL_CELLS)
         if session.time_s >= self._due_s:
             self._measure(session)
 
@@ -224,42 +262,3 @@ class BesideHistory:
         if session.truth is not None:
             self.error_map_m = evaluation.errors(map_, max(1, session.tick_count // ERROR_POINTS))[0]
         self.map_turn_rad = map_turn(self.map_turn_rad, evaluation, map_, session.truth)
-
-
-@kind("history/1")
-class History:
-    """Call `watch` after each tick."""
-
-    CACHES = ("log", "_session")
-
-    def __init__(self, session: Session) -> None:
-        self._session, self.log = session, EventLog(session)
-        self.events = EventWatch(session, self.log)
-        self.trails, self.visits, self.series = Trails(session), VisitLog(session), RunSeries(session)
-        self.beside: BesideHistory | None = None  # of the second brain, while there is one
-
-    def settle(self, session: Session, log: EventLog, last_snap: Snap | None) -> None:
-        """Go on in a history that was restored with this session. Its events are noted in this log."""
-        self._session, self.log = session, log
-        if self.beside is not None:
-            self.beside.settle()
-        self.events.settle(session, log, last_snap)
-        for part in (self.trails, self.visits, self.series):
-            part.settle(session)
-
-    def watch(self) -> None:
-        self.log.of_tick = True
-        for part in (self.trails, self.visits, self.events, self.series):
-            part.watch()
-        self.watch_companion()
-        if self.beside is not None:
-            self.beside.watch(self._session)
-        self.log.of_tick = False
-
-    def watch_companion(self) -> None:
-        """To be called when there is another second brain, too, so that it is shown before the next tick."""
-        companion = self._session.companion
-        if companion is None:
-            self.beside = None
-        elif self.beside is None or self.beside.of is not companion:
-            self.beside = BesideHistory(self._session, companion)

@@ -1,11 +1,4 @@
-"""The experience map and the times over it, rebuilt only as often as people can see a change.
-
-The occupancy grids from the sonars: the one around the robot, and one laid out over the experience map.
-
-Times to the goal over the pose cells, as in ACRA 2005.
-
-The strongest pose cells and the competing packets.
-"""
+"""The layers of a snapshot: experience map and times over it, occupancy grids, goal memory, and pose cells."""
 
 from __future__ import annotations
 
@@ -22,6 +15,7 @@ from app.evaluation import Evaluation
 from app.session import Session
 from app.views.arrays import frozen
 from app.views.history import History
+from app.views.senses import packet_of
 from ratslam_core import CellsOnly, ExperienceMap
 from ratslam_core.pose_cells.network import PoseCells
 from web.messages import (
@@ -30,18 +24,20 @@ from web.messages import (
     MapLayer,
     OccupancyLayer,
     OccupancyPicture,
-    Packet,
     PoseCellLayer,
     Snap,
     TimesLayer,
 )
 
+import_module("scipy.sparse.csgraph")  # otherwise the first goal would import it, while the robot drives
+
 MAP_EVERY_S = 0.5  # of wall time
 TIMES_EVERY_S = 0.25
+STRONGEST = 500
 
 
 class MapLayers:
-    """The map and the times over it. Row i of both belongs to the same experience."""
+    """The map and the times over it, rebuilt as often as people can see a change. Row i of both is one experience."""
 
     def __init__(
         self,
@@ -89,7 +85,7 @@ def map_layer(experiences: ExperienceMap, evaluation: Evaluation) -> MapLayer:
 
 
 def _visited(cells: CellsOnly, evaluation: Evaluation) -> NDArray[np.float32]:
-    """(4, 2) corners of where it has believed to be; where nobody has followed it, of the whole network around its start."""
+    """(4, 2) corners of where it has believed to be; with none to follow it, of the whole network round its start."""
     _, way, _ = evaluation.trajectories(cells)
     if len(way):
         low, high = way.min(0), way.max(0)
@@ -102,6 +98,7 @@ def _visited(cells: CellsOnly, evaluation: Evaluation) -> NDArray[np.float32]:
 
 
 def occupancy_layer(session: Session) -> OccupancyLayer | None:
+    """The grid around the robot, from its sonars, and one that is laid out over the experience map when it is drawn."""
     brain = session.brain
     if brain.occupancy is None or brain.map_grid is None:
         return None
@@ -114,10 +111,8 @@ def occupancy_layer(session: Session) -> OccupancyLayer | None:
     return OccupancyLayer(frozen(brain.occupancy.probability), draw_map)
 
 
-import_module("scipy.sparse.csgraph")  # otherwise the first goal would import it, while the robot drives
-
-
 def goal_memory_layer(session: Session) -> GoalMemoryLayer:
+    """Times to the goal over the pose cells, as in ACRA 2005."""
     memory, goal = session.brain.goal_memory, session.pilot.goal
     if goal is None:
         return GoalMemoryLayer(len(memory), None, None, None)
@@ -128,25 +123,21 @@ def goal_memory_layer(session: Session) -> GoalMemoryLayer:
     return GoalMemoryLayer(len(memory), cell, frozen(times.astype(np.float32)), direction)
 
 
-STRONGEST = 500
-
-
 def pose_cell_layer(session: Session, history: History) -> PoseCellLayer:
     return layer_of(session.brain.pose_cells, history.trails.packet, history.events.last_snap)
 
 
 def layer_of(pose_cells: PoseCells, path: NDArray[np.float32], last_snap: Snap | None) -> PoseCellLayer:
-    """path: of the winner, (p, 3): x', y' in cells, heading in rad."""
+    """The strongest pose cells and the packets. path: of the winner, (p, 3): x', y' in cells, heading in rad."""
     cells, activity = pose_cells.active
     strongest = np.argsort(-activity, kind="stable")[:STRONGEST]
-    packets = tuple(Packet(p.x, p.y, p.heading_rad, p.mass, p.id) for p in pose_cells.packets)
     return PoseCellLayer(
         shape=pose_cells.shape,
         cell_m=pose_cells.params.cell_m,
         cells=frozen(np.ascontiguousarray(cells[strongest][:, [2, 1, 0]], np.int32)),
         activity=frozen(activity[strongest]),
         active_cells=len(activity),
-        packets=packets,
+        packets=tuple(map(packet_of, pose_cells.packets)),
         path=path,
         last_snap=last_snap,
         total=float(activity.sum(dtype=np.float64)),

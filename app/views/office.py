@@ -1,16 +1,5 @@
-"""What the viewer draws of a world: the walls and their looks, places, slow floors, and the robot's fixed measures.
-
-The actors of the office, as the viewer draws them. The layer is the same object as long as nothing has moved.
-
-The named places of the office, and where the map has those at which the robot has been: for people, who click on names.
-
-Only people know where the names belong. The robot is told a place of its own map, as with any click on the map.
-
-The robot as it would be if it believed its wheels alone: odometry from the start pose on, without a look or a correction.
-
-The local movements that the robot tried in this tick, for the floor of the office.
-
-Tagged places, the goal and the route to it, with the times at which the robot should pass its experiences.
+"""What the page shows of an office: its world, actors and named places; and in it the robot's odometry, the arcs that
+it tried, its goal and the places that were tagged.
 """
 
 from __future__ import annotations
@@ -46,7 +35,7 @@ class DrawnWorld:
 
 
 def world_drawing(world: World, robot_radius_m: float, camera_fov_rad: float) -> WorldDrawing:
-    """What the viewer draws of a world."""
+    """The walls and what they look like, places, slow floors, and the robot's fixed measures."""
     drawing = draw_world(world)
     return WorldDrawing(
         name=world.name,
@@ -66,7 +55,7 @@ def world_drawing(world: World, robot_radius_m: float, camera_fov_rad: float) ->
 
 
 class ActorsView:
-    """Looks at one simulator."""
+    """The actors of one simulator. Their layer is the same object as long as nothing has moved."""
 
     def __init__(self) -> None:
         self._seen: tuple[object, str] | None = None
@@ -143,6 +132,10 @@ REACH_M = 1.5  # an experience that was truly made this near to a place stands f
 
 
 def known_places(session: Session) -> tuple[KnownPlace, ...]:
+    """The named places, and where the map has those at which the robot has been: for people, who click on names.
+
+    Only people know where the names belong. The robot is told a place of its own map, as with any click on the map.
+    """
     if session.recording is not None:
         return ()
     poses = session.brain.experience_map.poses
@@ -161,7 +154,8 @@ POINTS = 300  # of the path
 
 
 def ghost_of(session: Session) -> Ghost | None:
-    """None without truth: then nobody knows where the run began."""
+    """The robot as it would be if it believed its wheels alone: odometry from the start pose on, without an observation
+    or a correction. None without truth: then nobody knows where the run began."""
     if session.truth is None:
         return None
     evaluation = session.evaluation
@@ -177,9 +171,9 @@ def shown(pose: Pose2) -> Pose:
 
 
 def movements_of(session: Session) -> Callable[[], Movements] | None:
-    """Draws them, in any thread and only if somebody wants to see them. None: the robot chose no arc in this tick.
+    """Draws the local movements that the robot tried in this tick, in any thread, if somebody wants to see them.
 
-    They begin where the robot chose, which is a tick ago; its odometry since then tells where that was.
+    None: it chose no arc. They begin where it chose, a tick ago; its odometry since then tells where that was.
     """
     look = session.pilot.look_at_choice()
     if look is None:
@@ -205,6 +199,7 @@ def movements_of(session: Session) -> Callable[[], Movements] | None:
 
 
 def goal_view(session: Session) -> Goal | None:
+    """The goal and the route to it, with the times at which the robot should pass its experiences."""
     experiences = session.brain.experience_map
     progress = session.pilot.progress(experiences)
     if progress is None:

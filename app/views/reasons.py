@@ -1,9 +1,5 @@
-"""Why a packet snapped, a loop closed, a look was false, the robot felt lost or believes a place again: the chain that led
-there, kept when it happens.
-
-ACRA 2004 5.2, ACRA 2005 3.4 and 5.2, ACRA 2006 5.1.
-
-Which views, by their links to the pose cells, made the packet that won a snap. ACRA 2004 5.2, ACRA 2005 3.4.
+"""Why a packet snapped, a loop closed, an observation was false, the robot felt lost or believes a place again: the
+chain that led there, kept when it happens. ACRA 2004 5.2, ACRA 2005 3.4 and 5.2, ACRA 2006 5.1.
 """
 
 from __future__ import annotations
@@ -21,90 +17,7 @@ from app.views.senses import camera_image, packet_of, stored_picture
 from ratslam_core import Packet, Pose2
 from ratslam_core.extensions.evidence import Belief
 from web import messages as m
-from web.messages import SnapCause
 from web.messages.told import odds_words
-
-TICKS = 600  # how far back it is looked for, a minute at 10 Hz
-NEAR_CELLS, NEAR_LAYERS = 3.0, 3.0  # what is injected nearer to a packet than this feeds it
-MOST = 8  # causes that are told
-
-_Entry = tuple[float, dict[int, Packet], "tuple[int, NDArray[np.int32], NDArray[np.float32]] | None"]
-
-
-class SnapCauses:
-    """Call `watch` after each tick. It keeps references to what was injected, and computes nothing before a snap."""
-
-    def __init__(self, session: Session) -> None:
-        self._session = session
-        self._ticks: deque[_Entry] = deque(maxlen=TICKS)
-        self.since_s = session.time_s  # when the first of the causes told last put activity there
-
-    def watch(self) -> None:
-        brain = self._session.brain
-        injection = brain.association.injection
-        injected = None if injection is None else (injection.view, injection.cells, injection.values)
-        self._ticks.append((self._session.time_s, {packet.id: packet for packet in brain.pose_cells.packets}, injected))
-
-    def of(self, winner: Packet) -> tuple[SnapCause, ...]:
-        """The views that injected around this packet since it came into being, those that injected most first.
-
-        A packet moves as the robot drives. So each injection is compared with where the packet was in its tick.
-        """
-        amounts: dict[int, float] = {}
-        looks: dict[int, int] = {}
-        at, self.since_s = winner, self._session.time_s
-        for time_s, packets, injected in reversed(self._ticks):
-            then = packets.get(winner.id)
-            if then is None or self._apart(then, at) > NEAR_CELLS:
-                break
-            at = then
-            if injected is None:
-                continue
-            view, cells, values = injected
-            amount = float(values[self._near(cells, at)].sum(dtype=np.float64))
-            if amount > 0:
-                amounts[view] = amounts.get(view, 0.0) + amount
-                looks[view] = looks.get(view, 0) + 1
-                self.since_s = time_s
-        whole = sum(amounts.values())
-        most = sorted(amounts, key=lambda view: -amounts[view])[:MOST]
-        return tuple(self._cause(view, looks[view], amounts[view], amounts[view] / whole, winner) for view in most)
-
-    def _cause(self, view: int, looks: int, amount: float, share: float, winner: Packet) -> SnapCause:
-        association = self._session.brain.association
-        cells, strength = association.links.of(view)
-        there = strength[self._near(cells, winner)]
-        return SnapCause(
-            view, looks, amount, share, len(there), float(there.max(initial=0.0)), association.age_s(view)
-        )  # fmt: skip
-
-    def _apart(self, a: Packet, b: Packet) -> float:
-        return self._session.brain.pose_cells.cells_apart(a.x, a.y, b.x, b.y)
-
-    def _near(self, cells: NDArray[np.int32], packet: Packet) -> NDArray[np.bool_]:
-        """Which of these cells (flat indices) are near a packet, round the network's edges."""
-        n_theta, n_y, n_x = self._session.brain.pose_cells.shape
-        theta, y, x = np.unravel_index(cells, (n_theta, n_y, n_x))
-        across, up = _gap(x, packet.x, n_x), _gap(y, packet.y, n_y)
-        turned = _gap(theta, packet.heading_rad * n_theta / math.tau, n_theta)
-        return (across**2 + up**2 <= NEAR_CELLS**2) & (turned <= NEAR_LAYERS)
-
-
-def _gap(cells: NDArray[np.integer], at: float, size: int) -> NDArray[np.float64]:
-    away = np.abs(cells - at) % size
-    return np.minimum(away, size - away)
-
-
-def words_of(causes: tuple[SnapCause, ...]) -> str:
-    """The causes in a few words."""
-    if not causes:
-        return "no view put activity there"
-    first, more = causes[0], len(causes) - 1
-    looks = "1 look" if first.looks == 1 else f"{first.looks} looks"
-    others = f" and {more} more" if more else ""
-    about = f"{looks}, {first.share:.2f} of the injected activity, learnt {first.age_s:.0f} s before"
-    return f"by view {first.view} ({about}){others}"
-
 
 MOST_KEPT = 200
 MOST_VIEWS = 4
@@ -126,9 +39,8 @@ class Reasons:
         """ValueError: nothing is known of this event."""
         if event not in self._kept:
             known = f"; the newest is {max(self._kept)}" if self._kept else ": there has been none yet"
-            raise ValueError(
-                f"event must be a snap, closure, false look, lost moment or belief of late, got {event}{known}"
-            )
+            kinds = "a snap, closure, false look, lost moment or belief of late"
+            raise ValueError(f"event must be {kinds}, got {event}{known}")
         return self._kept[event]
 
     def watch(self) -> None:
@@ -141,8 +53,6 @@ class Reasons:
         if view >= 0 and (not self._seen or self._seen[-1][1] != view):
             self._seen = [*self._seen[-50:], (session.time_s, view)]
 
-    # ------------------------------------------------------------ what has happened in this tick
-
     def snap(self, event: m.Event, start: Packet, end: Packet, causes: tuple[m.SnapCause, ...]) -> None:
         """The winner changed from `start` to `end`, the views in `causes` having put activity there."""
         shares = {packet.id: packet.mass for packet in self._before}
@@ -152,7 +62,8 @@ class Reasons:
             for c in causes[:MOST_VIEWS]
         ]  # fmt: skip
         if end.id in shares:
-            words = f"packet {end.id} had {shares[end.id]:.0%} of all activity, packet {start.id} {shares.get(start.id, 0):.0%}"
+            had = f"packet {end.id} had {shares[end.id]:.0%} of all activity"
+            words = f"{had}, packet {start.id} {shares.get(start.id, 0):.0%}"
         else:
             words = f"packet {end.id} is new"
         apart = self._session.brain.pose_cells.cells_apart(start.x, start.y, end.x, end.y)
@@ -212,12 +123,13 @@ class Reasons:
     def believes(self, event: m.Event, belief: Belief) -> None:
         """A robot that was carried believes a place again."""
         said = self._spoken.of(belief.pose)
+        since_s = said[0][0] if said else event.time_s
         spoken, against = (sum(sign * nats > 0 for _, nats in said) for sign in (1, -1))
         view = int(self._session.brain.experience_map.views[belief.experience])
         odds = odds_words(math.exp(belief.log_odds))
         chain = [
             (
-                said[0][0] if said else event.time_s,
+                since_s,
                 "a view that it knew suggested this place, among others; a guess begins with odds against it",
             ),
             (event.time_s, f"of what it saw since, {_parts(spoken)} spoke for it and {_parts(against)} against"),
@@ -226,10 +138,7 @@ class Reasons:
                 f"it is likelier than all other places together, {odds}: here it acts, and learns nothing from it",
             ),
         ]
-        since_s = said[0][0] if said else event.time_s
         self._keep(event, chain, [(view, "expected here")], since_s, (), (belief.experience,), tuple(said))
-
-    # ------------------------------------------------------------ inside
 
     def _keep(
         self, event: m.Event, chain: list[tuple[float, str]], views: list[tuple[int, str]], since_s: float,
@@ -254,13 +163,96 @@ class Reasons:
         return f"it differs by {self._session.estimate.recognition.difference:.1f}, the threshold is {limit:.1f}"
 
 
+def _apart(a: Pose2, b: Pose2) -> float:
+    return math.hypot(b.x - a.x, b.y - a.y)
+
+
 def _parts(count: int) -> str:
     return "one part" if count == 1 else f"{count} parts"
 
 
+TICKS = 600  # how far back it is looked for, a minute at 10 Hz
+NEAR_CELLS, NEAR_LAYERS = 3.0, 3.0  # what is injected nearer to a packet than this feeds it
+MOST = 8  # causes that are told
+
+_Entry = tuple[float, dict[int, Packet], "tuple[int, NDArray[np.int32], NDArray[np.float32]] | None"]
+
+
+class SnapCauses:
+    """Which views, by their links to the pose cells, made the packet that won a snap. ACRA 2004 5.2, ACRA 2005 3.4.
+
+    Call `watch` after each tick. It keeps references to what was injected, and computes nothing before a snap.
+    """
+
+    def __init__(self, session: Session) -> None:
+        self._session = session
+        self._ticks: deque[_Entry] = deque(maxlen=TICKS)
+        self.since_s = session.time_s  # when the first of the causes told last put activity there
+
+    def watch(self) -> None:
+        brain = self._session.brain
+        injection = brain.association.injection
+        injected = None if injection is None else (injection.view, injection.cells, injection.values)
+        self._ticks.append((self._session.time_s, {packet.id: packet for packet in brain.pose_cells.packets}, injected))
+
+    def of(self, winner: Packet) -> tuple[m.SnapCause, ...]:
+        """The views that injected around this packet since it came into being, those that injected most first.
+
+        A packet moves as the robot drives. So each injection is compared with where the packet was in its tick.
+        """
+        amounts: dict[int, float] = {}
+        looks: dict[int, int] = {}
+        at, self.since_s = winner, self._session.time_s
+        for time_s, packets, injected in reversed(self._ticks):
+            then = packets.get(winner.id)
+            if then is None or self._apart(then, at) > NEAR_CELLS:
+                break
+            at = then
+            if injected is None:
+                continue
+            view, cells, values = injected
+            amount = float(values[self._near(cells, at)].sum(dtype=np.float64))
+            if amount > 0:
+                amounts[view] = amounts.get(view, 0.0) + amount
+                looks[view] = looks.get(view, 0) + 1
+                self.since_s = time_s
+        whole = sum(amounts.values())
+        most = sorted(amounts, key=lambda view: -amounts[view])[:MOST]
+        return tuple(self._cause(view, looks[view], amounts[view], amounts[view] / whole, winner) for view in most)
+
+    def _cause(self, view: int, looks: int, amount: float, share: float, winner: Packet) -> m.SnapCause:
+        association = self._session.brain.association
+        cells, strength = association.links.of(view)
+        there = strength[self._near(cells, winner)]
+        strongest = float(there.max(initial=0.0))
+        return m.SnapCause(view, looks, amount, share, len(there), strongest, association.age_s(view))
+
+    def _apart(self, a: Packet, b: Packet) -> float:
+        return self._session.brain.pose_cells.cells_apart(a.x, a.y, b.x, b.y)
+
+    def _near(self, cells: NDArray[np.int32], packet: Packet) -> NDArray[np.bool_]:
+        """Which of these cells (flat indices) are near a packet, round the network's edges."""
+        n_theta, n_y, n_x = self._session.brain.pose_cells.shape
+        theta, y, x = np.unravel_index(cells, (n_theta, n_y, n_x))
+        across, up = _gap(x, packet.x, n_x), _gap(y, packet.y, n_y)
+        turned = _gap(theta, packet.heading_rad * n_theta / math.tau, n_theta)
+        return (across**2 + up**2 <= NEAR_CELLS**2) & (turned <= NEAR_LAYERS)
+
+
+def _gap(cells: NDArray[np.integer], at: float, size: int) -> NDArray[np.float64]:
+    away = np.abs(cells - at) % size
+    return np.minimum(away, size - away)
+
+
+def words_of(causes: tuple[m.SnapCause, ...]) -> str:
+    """The causes in a few words."""
+    if not causes:
+        return "no view put activity there"
+    first, more = causes[0], len(causes) - 1
+    others = f" and {more} more" if more else ""
+    about = f"{_looks(first.looks)}, {first.share:.2f} of the injected activity, learnt {first.age_s:.0f} s before"
+    return f"by view {first.view} ({about}){others}"
+
+
 def _looks(count: int) -> str:
     return "1 look" if count == 1 else f"{count} looks"
-
-
-def _apart(a: Pose2, b: Pose2) -> float:
-    return math.hypot(b.x - a.x, b.y - a.y)

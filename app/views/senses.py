@@ -1,7 +1,4 @@
-"""What the robot senses, and which view it recognises.
-
-Views and packets of a brain as people are shown them.
-"""
+"""What the robot senses, which view it recognises, and views and packets as people are shown them."""
 
 from __future__ import annotations
 
@@ -12,21 +9,20 @@ from app.session import Session
 from app.views.arrays import frozen
 from ratslam_core import Packet, RatSlam
 from web import messages as m
-from web.messages import Senses
 
-NO_PICTURE: NDArray[np.uint8] = frozen(np.zeros((0, 0, 3), np.uint8))
+_NO_PICTURE: NDArray[np.uint8] = frozen(np.zeros((0, 0, 3), np.uint8))
 
 
 def camera_image(session: Session) -> NDArray[np.uint8]:
     """(h, w, 3) what the camera sees; without pixels while it is off."""
-    return session.frame.image if session.config.robot.camera else NO_PICTURE
+    return session.frame.image if session.config.robot.camera else _NO_PICTURE
 
 
-def senses_of(session: Session) -> Senses:
+def senses_of(session: Session) -> m.Senses:
     recognition, local_view = session.estimate.recognition, session.brain.local_view
     best, front_end = recognition.best_view, local_view.front_end
     stored = local_view.stored(best) if best >= 0 else None
-    return Senses(
+    return m.Senses(
         camera=camera_image(session),
         front_end=local_view.params.front_end,
         seen=frozen(front_end.picture(local_view.features).copy()),

@@ -1,9 +1,4 @@
-"""Builds the immutable Snapshot of a session. Expensive parts are rebuilt only as often as people can see a change.
-
-All parameters with their descriptions, and the preset whose values they have.
-
-The second brains that the page offers: those that would differ from the first, and each with one addition the other way.
-"""
+"""Builds the immutable Snapshot of a session. Expensive parts are rebuilt only as often as people can see a change."""
 
 from __future__ import annotations
 
@@ -45,59 +40,6 @@ from web.messages import (
     UntilView,
 )
 
-
-class ParameterRows:
-    """Builds the rows anew only when the config has changed."""
-
-    def __init__(self) -> None:
-        self._config: Config | None = None
-        self._rows: tuple[Parameter, ...] = ()
-        self._preset = ""
-
-    def of(self, config: Config, recorded: bool = False) -> tuple[tuple[Parameter, ...], str]:
-        """All parameters, and the name of the preset whose values they have, or "".
-
-        recorded: without those of the simulator and the pilot, which a recording does not have.
-        """
-        if self._config is not config:
-            self._config, self._preset = config, preset_of(config)
-            self._rows = tuple(
-                Parameter(name=name, value=value, default=cast(Value, item.default), **item.metadata)
-                for name, item, value in config.items()
-                if not (recorded and name.split(".")[0] in NOT_RECORDED)
-            )
-        return self._rows, self._preset
-
-
-class PairChoices:
-    """Made anew only when a config has changed."""
-
-    def __init__(self) -> None:
-        self._configs: tuple[Config, Config] | None = None
-        self._choices: tuple[tuple[PairChoice, ...], AdditionsOff] = (), AdditionsOff()
-
-    def of(self, beginning: Config, now: Config) -> tuple[tuple[PairChoice, ...], AdditionsOff]:
-        """beginning: the config with which the run would begin anew; now: that with which it runs."""
-        before = self._configs
-        if before is None or before[0] is not beginning or before[1] is not now:
-            self._configs = beginning, now
-            self._choices = tuple(_choices(beginning, now)), AdditionsOff(_off(beginning), _off(now))
-        return self._choices
-
-
-def _choices(beginning: Config, now: Config) -> Iterator[PairChoice]:
-    for pair in pairs_beside(beginning):
-        yield PairChoice(pair.name, pair.title, pair.about, "beginning")
-    live = {dotted for dotted, item, _ in now.items() if item.metadata["live"]}
-    for pair in pairs_beside(now):
-        if pair.values.keys() <= live:
-            yield PairChoice(pair.name, pair.title, pair.about, "now")
-
-
-def _off(config: Config) -> tuple[str, ...]:
-    return tuple(addition.name for addition in ADDITIONS if without(addition, config))
-
-
 OCCUPANCY_EVERY_S = 2.0  # of wall time
 GOAL_MEMORY_EVERY_S = 0.5
 PLACES_EVERY_S = 1.0
@@ -120,7 +62,7 @@ class Snapshots:
         self.additions_off = AdditionsOff()
         self.inspected = Inspect(type="inspect")  # at first nothing
         self.walk: Walk | None = None  # through the stages of the last tick
-        self._drawn, self._actors, self._parameters = DrawnWorld(), ActorsView(), ParameterRows()
+        self._drawn, self._actors, self._parameters = DrawnWorld(), ActorsView(), _ParameterRows()
         self._floor = TruthFloor()
         self._fitted: tuple[Pose2 | None, Pose | None] = None, None
         self._settled_at: int | None = None
@@ -248,10 +190,62 @@ class Snapshots:
     def parts(self) -> dict[str, Any]:
         """The fields of the snapshot that differ between the stages of a tick, as they are now."""
         layer, times = self._map.layers()
-        robot = self._session.brain.experience_map.robot
         return {
             "pose_cells": pose_cell_layer(self._session, self._history),
             "map": layer,
             "times": times,
-            "estimate": Pose(robot.x, robot.y, robot.heading_rad),
+            "estimate": shown(self._session.brain.experience_map.robot),
         }
+
+
+class _ParameterRows:
+    """The parameters as the page lists them. Made anew only when the config has changed."""
+
+    def __init__(self) -> None:
+        self._config: Config | None = None
+        self._rows: tuple[Parameter, ...] = ()
+        self._preset = ""
+
+    def of(self, config: Config, recorded: bool = False) -> tuple[tuple[Parameter, ...], str]:
+        """All parameters, and the name of the preset whose values they have, or "".
+
+        recorded: without those of the simulator and the pilot, which a recording does not have.
+        """
+        if self._config is not config:
+            self._config, self._preset = config, preset_of(config)
+            self._rows = tuple(
+                Parameter(name=name, value=value, default=cast(Value, item.default), **item.metadata)
+                for name, item, value in config.items()
+                if not (recorded and name.split(".")[0] in NOT_RECORDED)
+            )
+        return self._rows, self._preset
+
+
+class PairChoices:
+    """The second brains that the page offers: those that would differ from the first, and each with one addition the
+    other way. Made anew only when a config has changed."""
+
+    def __init__(self) -> None:
+        self._configs: tuple[Config, Config] | None = None
+        self._choices: tuple[tuple[PairChoice, ...], AdditionsOff] = (), AdditionsOff()
+
+    def of(self, beginning: Config, now: Config) -> tuple[tuple[PairChoice, ...], AdditionsOff]:
+        """beginning: the config with which the run would begin anew; now: that with which it runs."""
+        before = self._configs
+        if before is None or before[0] is not beginning or before[1] is not now:
+            self._configs = beginning, now
+            self._choices = tuple(_choices(beginning, now)), AdditionsOff(_off(beginning), _off(now))
+        return self._choices
+
+
+def _choices(beginning: Config, now: Config) -> Iterator[PairChoice]:
+    for pair in pairs_beside(beginning):
+        yield PairChoice(pair.name, pair.title, pair.about, "beginning")
+    live = {dotted for dotted, item, _ in now.items() if item.metadata["live"]}
+    for pair in pairs_beside(now):
+        if pair.values.keys() <= live:
+            yield PairChoice(pair.name, pair.title, pair.about, "now")
+
+
+def _off(config: Config) -> tuple[str, ...]:
+    return tuple(addition.name for addition in ADDITIONS if without(addition, config))

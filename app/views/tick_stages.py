@@ -1,11 +1,8 @@
 """One tick, stage by stage: the effect of each stage is recorded while the tick runs and can be shown afterwards.
 
-The tick is always computed as a whole, in the order of `RatSlam.step`, whether it is recorded or not.
-
-One attractor iteration in its three stages, for people to look at: excitation, inhibition, normalisation. ACRA 2004
-eqs. 10-12.
-
-The engine computes all three at once and skips cells that inhibition would silence. This computes the same sum, slowly.
+The tick is always computed as a whole, in the order of `RatSlam.step`, whether it is recorded or not. The engine
+computes an attractor iteration (ACRA 2004 eqs. 10-12) at once and skips cells that inhibition would silence. Here its
+stages, excitation, inhibition and normalisation, compute the same sum, slowly, for people to look at.
 `test_tick_stages.py::test_the_stages_lead_where_the_engine_went` compares the two.
 """
 
@@ -21,52 +18,10 @@ from numpy.typing import NDArray
 from app.session import Session
 from app.views.arrays import frozen
 from app.views.map_layers import STRONGEST, map_layer
-from ratslam_core import Odometry, PoseCellParams
+from app.views.office import shown
+from ratslam_core import PoseCellParams
 from ratslam_core.pose_cells.attractor_kernels import gaussian
-from web.messages import Pose, PoseCellLayer, TickStage, TickWalk
-
-
-@dataclass(frozen=True)
-class Activity:
-    """Active pose cells: flat indices (n,), ascending, and their activities (n,)."""
-
-    flat: NDArray[np.int64]
-    values: NDArray[np.float64]
-
-    @property
-    def total(self) -> float:
-        return float(self.values.sum())
-
-
-def excited(activity: Activity, params: PoseCellParams) -> Activity:
-    """Every cell excites its neighbours on the torus."""
-    return _spread(activity, params, gaussian(params.excite_sigma))
-
-
-def inhibited(activity: Activity, params: PoseCellParams) -> Activity:
-    """The same amount is subtracted from every cell. A cell that falls to 0 or below becomes silent."""
-    values = activity.values - params.inhibit
-    alive = values > 0
-    return Activity(activity.flat[alive], values[alive])
-
-
-def normalised(activity: Activity) -> Activity:
-    return Activity(activity.flat, activity.values / activity.total)
-
-
-def _spread(activity: Activity, params: PoseCellParams, weights: NDArray[np.float32]) -> Activity:
-    """Convolution along theta', then y', then x', over the active cells only."""
-    n_theta, n_y, n_x = shape = params.n_theta, params.n_y, params.n_x
-    reach = np.arange(len(weights)) - len(weights) // 2
-    for axis, size in enumerate((n_theta, n_y, n_x)):
-        places = np.stack(np.unravel_index(activity.flat, shape))
-        moved = np.repeat(places, len(reach), 1)
-        moved[axis] = (moved[axis] + np.tile(reach, len(activity.flat))) % size
-        flat, row = np.unique(np.ravel_multi_index(tuple(moved), shape), return_inverse=True)
-        parts = (activity.values[:, None] * weights.astype(np.float64)).ravel()
-        activity = Activity(flat, np.asarray(np.bincount(row.ravel(), parts, len(flat)), np.float64))
-    return activity
-
+from web.messages import PoseCellLayer, TickStage, TickWalk
 
 TITLES = {
     "image": "Image and odometry",
@@ -110,7 +65,6 @@ class TickRecorder:
         """before: the parts `pose_cells`, `map`, `times` and `estimate` of the snapshot before the tick."""
         self._session, self._before = session, before
         self._here = session.brain.experience_map.here
-        self._known = len(session.brain.experience_map)
         self._cells: dict[str, Activity] = {"view match": self._activity()}
         self._between = session.brain.beats.due(session.dt_ahead) == 0
         self._poses = np.zeros((0, 3))
@@ -124,11 +78,7 @@ class TickRecorder:
         elif part == "experience":
             map_ = self._session.brain.experience_map
             self._poses, self._residual = map_.poses.copy(), map_.residual
-            robot = map_.robot
-            self._map = {
-                "map": map_layer(map_, self._session.evaluation),
-                "estimate": Pose(robot.x, robot.y, robot.heading_rad),
-            }
+            self._map = {"map": map_layer(map_, self._session.evaluation), "estimate": shown(map_.robot)}
 
     def walk(self, after: dict[str, Any]) -> Walk:
         """A walk through the recorded tick. after: the same parts as `before`, at the end of the tick."""
@@ -160,10 +110,8 @@ class TickRecorder:
         ]
         return Walk(tuple(Still(TickStage(name, TITLES[name], words), parts) for name, words, parts in steps))
 
-    # ------------------------------------------------------------ what each stage did, in a sentence
-
     def _image(self) -> str:
-        odometry = self._odometry()
+        odometry = self._session.odometry
         way, turn = 100 * odometry.speed * odometry.dt, math.degrees(odometry.yaw_rate * odometry.dt)
         who = "The wheels report" if self._session.recording is None else "The recording tells of"
         return f"{who} {_plain(way, 1)} cm ahead and a turn of {_plain(turn, 1)}°; then the camera takes a picture."
@@ -184,22 +132,20 @@ class TickRecorder:
         return f"{nearest}, within the threshold {limit:.1f}: it is recognised."
 
     def _path_integration(self) -> str:
-        odometry, params = self._odometry(), self._session.brain.params.pose_cells
+        odometry, params = self._session.odometry, self._session.brain.params.pose_cells
         if odometry.still:
             return "The wheels stand: the activity stays where it is."
         ahead = odometry.speed * odometry.dt / params.cell_m
         turn = (odometry.yaw_rate + params.yaw_bias) * odometry.dt / math.tau * params.n_theta
-        return (
-            f"All activity moves {_plain(ahead, 2)} cells along its own heading and turns by {_plain(turn, 2)} layers."
-        )
+        way = f"{_plain(ahead, 2)} cells along its own heading"
+        return f"All activity moves {way} and turns by {_plain(turn, 2)} layers."
 
     def _injection(self, before: Activity, after: Activity) -> str:
         seen = self._session.estimate.recognition
         gained = after.total - before.total
         if gained <= 1e-9:
-            why = (
-                "there is no view" if seen.view < 0 else "the view is new" if seen.recruited else "the view still rests"
-            )
+            why = "the view is new" if seen.recruited else "the view still rests"
+            why = "there is no view" if seen.view < 0 else why
             return f"Nothing is injected: {why}."
         cells = len(self._session.brain.view_links.of(seen.view)[0])
         return f"View #{seen.view} adds {100 * gained:.1f} % of the activity, over its links to {cells} pose cells."
@@ -216,9 +162,8 @@ class TickRecorder:
         energy = map_.energy(map_.here, estimate.packet, estimate.recognition.view)
         if map_.here == self._here:
             return f"Experience #{map_.here} still fits, with energy {energy:.2f}: it stays active."
-        return (
-            f"Experience #{map_.here} fits best, with energy {energy:.2f}: a link from #{self._here} to it is learnt."
-        )
+        link = f"a link from #{self._here} to it is learnt"
+        return f"Experience #{map_.here} fits best, with energy {energy:.2f}: {link}."
 
     def _correction(self) -> str:
         map_ = self._session.brain.experience_map
@@ -228,9 +173,6 @@ class TickRecorder:
         was, now = 1000 * self._residual[0], 1000 * map_.residual[0]
         moved = f"the farthest experience moved {1000 * most:.1f} mm"
         return f"Links and map disagreed by {was:.1f} mm, now by {now:.1f} mm; {moved}."
-
-    def _odometry(self) -> Odometry:
-        return self._session.odometry
 
     def _activity(self) -> Activity:
         cells, values = self._session.brain.pose_cells.active
@@ -263,3 +205,41 @@ def _layer(like: PoseCellLayer, activity: Activity) -> PoseCellLayer:
         total=activity.total,
         least=float(activity.values.min(initial=1.0)),
     )
+
+
+@dataclass(frozen=True)
+class Activity:
+    """Active pose cells: flat indices (n,), ascending, and their activities (n,)."""
+
+    flat: NDArray[np.int64]
+    values: NDArray[np.float64]
+
+    @property
+    def total(self) -> float:
+        return float(self.values.sum())
+
+
+def excited(activity: Activity, params: PoseCellParams) -> Activity:
+    """Every cell excites its neighbours on the torus: convolution along theta', then y', then x'."""
+    weights = gaussian(params.excite_sigma)
+    shape = params.n_theta, params.n_y, params.n_x
+    reach = np.arange(len(weights)) - len(weights) // 2
+    for axis, size in enumerate(shape):
+        places = np.stack(np.unravel_index(activity.flat, shape))
+        moved = np.repeat(places, len(reach), 1)
+        moved[axis] = (moved[axis] + np.tile(reach, len(activity.flat))) % size
+        flat, row = np.unique(np.ravel_multi_index(tuple(moved), shape), return_inverse=True)
+        parts = (activity.values[:, None] * weights.astype(np.float64)).ravel()
+        activity = Activity(flat, np.asarray(np.bincount(row.ravel(), parts, len(flat)), np.float64))
+    return activity
+
+
+def inhibited(activity: Activity, params: PoseCellParams) -> Activity:
+    """The same amount is subtracted from every cell. A cell that falls to 0 or below becomes silent."""
+    values = activity.values - params.inhibit
+    alive = values > 0
+    return Activity(activity.flat[alive], values[alive])
+
+
+def normalised(activity: Activity) -> Activity:
+    return Activity(activity.flat, activity.values / activity.total)

@@ -1,16 +1,10 @@
 """[ours] Notices that the robot was carried away, and when it knows again where it is.
 
 Image and sonars jump although the wheels did not. A robot that did not notice would learn the way it was carried as a
-link, which bends the map. test_kidnap_detector.py::{test_a_kidnap_is_noticed_and_survived,
+link, which bends the map. The image alone misses many kidnaps, since walls look alike, and sometimes raises a false
+alarm when something is near. test_kidnap_detector.py::{test_a_kidnap_is_noticed_and_survived,
 test_sonars_help_to_notice_a_kidnap}.
 `NeverKidnapped` is the plain twin: the papers' robots relocalised by their pose cells alone.
-
-[ours] How much the sonars changed at once. Driving past a corner changes one or two of them, being carried away most.
-
-The image alone misses many kidnaps, since walls look alike, and sometimes raises a false alarm when something is near.
-Ranges are compared by their ratio, since a few centimetres are much beside a wall and nothing in a hall, and each sonar
-counts up to a limit, so that one that looks past a corner does not speak for all. test_scan_change.py,
-test_kidnap_detector.py::test_sonars_help_to_notice_a_kidnap.
 """
 
 from __future__ import annotations
@@ -25,42 +19,11 @@ from disk import kind
 from ratslam_core.beats import weight
 from ratslam_core.params import KidnapParams
 
-NEAR_M, REACH_M = 0.2, 4.0  # shorter and longer ranges count as these, since distant echoes come and go
-MOST = 0.35  # a larger change of one sonar, as the logarithm of the ratio of its ranges, counts as this
-
-
-@kind("scan change/3")
-class ScanChange:
-    """Remembers the last scan."""
-
-    def __init__(self) -> None:
-        self._last: NDArray[np.float64] | None = None
-
-    def observe(self, ranges_m: NDArray[np.float64] | None) -> float:
-        """By how much the sonars differ from the scan before: the mean of |ln(now / before)|, each at most MOST.
-
-        0 when there is nothing to compare with. ranges_m: (n,) metres, none negative; None forgets the scan before.
-        """
-        last, self._last = self._last, None if ranges_m is None else ranges_m.copy()
-        if last is None or ranges_m is None:
-            return 0.0
-        return _change(last, ranges_m)
-
-
-@njit(cache=True, nogil=True)
-def _change(before: NDArray[np.float64], now: NDArray[np.float64]) -> float:
-    total = 0.0
-    for k in range(len(now)):
-        ratio = min(max(now[k], NEAR_M), REACH_M) / min(max(before[k], NEAR_M), REACH_M)
-        total += min(abs(math.log(ratio)), MOST)
-    return total / len(now)
-
-
 USUAL_TIMES, USUAL_RATE = 2.0, 0.02  # a jump is more than twice the usual change, a mean over some fifty beats
 MOST_USUAL = 2.0  # a larger change counts as this, since it may be infinite
 TIME_POWER = 0.3  # of the beats between two images; so many times as much can driving explain
 SETTLED = 1200  # beats without a contradiction, two minutes, after which the robot is no longer lost, either
-FOUND_AGAIN = 8  # sights of known places, one a beat, that must agree before the robot is no longer lost
+FOUND_AGAIN = 8  # observations of known places, one a beat, that must agree before the robot is no longer lost
 
 
 @kind("kidnap detector/4")
@@ -106,12 +69,12 @@ class KidnapDetector:
     def settle(self, agrees: bool, known: int, beats: int = 1) -> bool:
         """So many more beats; whether the robot has found itself in them.
 
-        It is no longer lost once FOUND_AGAIN sights of experiences from before the kidnap, taking into account the
+        It is no longer lost once FOUND_AGAIN observations of experiences from before the kidnap, taking into account the
         odometry between them, agree on where it is. New experiences in between count neither way: perhaps only a wall
-        was drawn. It is no longer lost either after SETTLED beats without a contradiction: it is
-        elsewhere and knows its way there.
+        was drawn. It is no longer lost either after SETTLED beats without a contradiction: it is elsewhere and knows its
+        way there.
 
-        agrees: whether the look agrees with where the robot believed itself to be; known: the experience that was
+        agrees: whether the observation agrees with where the robot believed itself to be; known: the experience that was
         recognised, -1 for none. test_kidnap_detector.py::{test_a_changed_place_does_not_keep_the_robot_lost,
         test_nobody_is_lost_for_ever}.
         """
@@ -151,3 +114,38 @@ class NeverKidnapped:
     def settle(self, _agrees: bool, _known: int, _beats: int = 1) -> bool:
         """The robot is never lost."""
         return False
+
+
+NEAR_M, REACH_M = 0.2, 4.0  # shorter and longer ranges count as these, since distant echoes come and go
+MOST = 0.35  # a larger change of one sonar, as the logarithm of the ratio of its ranges, counts as this
+
+
+@kind("scan change/3")
+class ScanChange:
+    """[ours] How much the sonars changed at once. Driving past a corner changes one or two of them, being carried away most.
+
+    Ranges are compared by their ratio, since a few centimetres are much beside a wall and nothing in a hall, and each
+    sonar counts up to a limit, so that one that looks past a corner does not speak for all. test_scan_change.py.
+    """
+
+    def __init__(self) -> None:
+        self._last: NDArray[np.float64] | None = None
+
+    def observe(self, ranges_m: NDArray[np.float64] | None) -> float:
+        """By how much the sonars differ from the scan before: the mean of |ln(now / before)|, each at most MOST.
+
+        0 when there is nothing to compare with. ranges_m: (n,) metres, none negative; None forgets the scan before.
+        """
+        last, self._last = self._last, None if ranges_m is None else ranges_m.copy()
+        if last is None or ranges_m is None:
+            return 0.0
+        return _change(last, ranges_m)
+
+
+@njit(cache=True, nogil=True)
+def _change(before: NDArray[np.float64], now: NDArray[np.float64]) -> float:
+    total = 0.0
+    for k in range(len(now)):
+        ratio = min(max(now[k], NEAR_M), REACH_M) / min(max(before[k], NEAR_M), REACH_M)
+        total += min(abs(math.log(ratio)), MOST)
+    return total / len(now)

@@ -1,20 +1,9 @@
 """[ours] Between each experience and the one made before it stands odometry alone: the backbone of map correction.
 
-Looks and odometry never share a row. A look can be wrong by decimetres, or false; odometry is right to a few per cent
-unless the robot is carried. If the robot came straight from the experience made before, the way is the backbone, and no
-later passage, which begins and ends with looks, is averaged into it. If it passed known ones in between, an edge of its
-own, which no route takes, ties the two; the way from the known one rests on a look and can be doubted.
-test_experience_map_transitions.py::test_odometry_past_known_places_keeps_the_chain_rigid,
-::test_no_look_is_averaged_into_the_backbone. `NoOdometryEdges` is the plain twin: in the papers only transitions tie
-experiences.
-
-[ours] Where odometry was wrong, when looks have proved that the robot is not where it led.
-
-The robot was carried and did not notice, or its wheels slipped. It cannot have happened between places that a closure
-ties together past the gap; so it was in the last stretch of the backbone that no closure bridges. There, the rows of
-odometry are taken as uncertain by as much as they proved wrong together, and the closures that follow put both sides
-where they belong. test_torn.py::test_an_unnoticed_kidnap_is_found_in_the_backbone. With `experience_map.islands` off
-nothing is proved wrong.
+Observations and odometry never share a row. An observation can be wrong by decimetres, or false; odometry is right to a
+few per cent unless the robot is carried or its wheels slip, which is found out later (`soften`).
+test_experience_map_transitions.py::test_no_look_is_averaged_into_the_backbone. `NoOdometryEdges` is the plain twin: in
+the papers only transitions tie experiences.
 """
 
 from __future__ import annotations
@@ -31,7 +20,13 @@ from ratslam_core.types import Odometry, Pose2
 
 @kind("odometry edges/1")
 class OdometryEdges:
-    """Remembers the newest experience: where it was made is known exactly."""
+    """Remembers the newest experience: where it was made is known exactly.
+
+    If the robot came straight from there, the way is the backbone, and no later passage, which begins and ends with
+    observations, is averaged into it. If it passed known ones in between, an edge of its own, which no route takes, ties
+    the two; the way from the known one rests on an observation and can be doubted.
+    test_experience_map_transitions.py::test_odometry_past_known_places_keeps_the_chain_rigid.
+    """
 
     def __init__(self) -> None:
         self.latest = -1
@@ -42,7 +37,7 @@ class OdometryEdges:
         self.since.add(moved, odometry)
 
     def look(self) -> None:
-        """A known experience was recognised: what is learnt next begins with a look."""
+        """A known experience was recognised: what is learnt next begins with an observation."""
         self.looked = True
 
     def forget(self) -> None:
@@ -79,7 +74,11 @@ class NoOdometryEdges:
 def soften(t: Transitions, first: int, last: int, off_m: float, sigma: float) -> NDArray[np.intp]:
     """Take the backbone as uncertain where it may be torn after experience `first`, up to `last`; returns these rows.
 
-    off_m: by how much it was wrong; sigma: of odometry over one step, m.
+    [ours] Observations proved that the robot is not where odometry led: unnoticed, it was carried, or its wheels slipped.
+    The loop closures that follow put both sides of these rows where they belong. With `experience_map.islands` off
+    nothing is proved wrong. test_torn.py::test_an_unnoticed_kidnap_is_found_in_the_backbone.
+
+    off_m: by how much they were wrong together; sigma: of odometry over one step, m.
     """
     rows = torn(t, first, last)
     if len(rows):
@@ -89,13 +88,14 @@ def soften(t: Transitions, first: int, last: int, off_m: float, sigma: float) ->
 
 
 def open_way_m(t: Transitions, first: int, last: int) -> float:
-    """How long the backbone is, between these experiences, where no closure bridges it: there its drift is unbounded."""
+    """How long the backbone is, between these experiences, where no loop closure bridges it: there its drift is unbounded."""
     rows = _unbridged(t, first, last)
     return float(np.hypot(t.move[rows, 0], t.move[rows, 1]).sum())
 
 
 def torn(t: Transitions, first: int, last: int) -> NDArray[np.intp]:
-    """The rows of the last stretch of the backbone, between these experiences, that no closure bridges."""
+    """The rows of the last stretch of the backbone, between these experiences, that no loop closure bridges: what went wrong
+    did not happen between places that one ties together past the gap."""
     rows = _unbridged(t, first, last)
     newer = t.ends[rows].max(axis=1)
     apart = np.flatnonzero(np.diff(newer) > 1)  # rows are in the order in which they were made
@@ -104,10 +104,10 @@ def torn(t: Transitions, first: int, last: int) -> NDArray[np.intp]:
 
 def _unbridged(t: Transitions, first: int, last: int) -> NDArray[np.intp]:
     ends, chain = t.ends[: t.count], t.chain[: t.count]
-    looks = ~chain & (t.believed[: t.count] > 0)
+    observations = ~chain & (t.believed[: t.count] > 0)
     bridges = np.zeros(int(ends.max(initial=0)) + 2, np.int64)
-    np.add.at(bridges, ends[looks].min(axis=1) + 1, 1)
-    np.add.at(bridges, ends[looks].max(axis=1) + 1, -1)
+    np.add.at(bridges, ends[observations].min(axis=1) + 1, 1)
+    np.add.at(bridges, ends[observations].max(axis=1) + 1, -1)
     bridged = np.cumsum(bridges) > 0
     newer = ends.max(axis=1)
     return np.flatnonzero(chain & (newer > first) & (newer <= last) & ~bridged[newer])

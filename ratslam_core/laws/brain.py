@@ -1,11 +1,7 @@
-"""What is true of a whole brain: of each part, and between the parts.
+"""What is true of a whole brain between two steps: of each part, and between the parts."""
 
-What is true of the beats between two ticks.
-
-What is true of the goal memory, of the pictures of occupancy and of the last scan between two steps.
-
-What is true of the pose cells between two steps.
-"""
+# Laws look at all of a state, and take nothing for granted.
+# pyright: reportPrivateUsage=false, reportUnnecessaryIsInstance=false
 
 from __future__ import annotations
 
@@ -17,102 +13,113 @@ import numpy as np
 from ratslam_core.beats import EARLY, Beats
 from ratslam_core.extensions.kidnap_detector import MOST_USUAL, KidnapDetector
 from ratslam_core.goal_memory import FREE, GoalMemory, _Iteration, misplaced
-from ratslam_core.laws.experience_map import LONGEST, experience_map, learnt, local_view, view_links
-from ratslam_core.laws.measures import FAR_M, array, number, same_kind, true, whole, within
+from ratslam_core.laws.experience_map import LARGEST, experience_map, learnt, local_view, view_links
+from ratslam_core.laws.measures import FAR_M, MOST, array, number, same_kind, true, whole, within
 from ratslam_core.local_view.recogniser import LocalView
-from ratslam_core.occupancy_grid import BOUND, KEPT, MapGrid, OccupancyGrid
+from ratslam_core.occupancy_grid import BOUND, KEPT, MapGrid
 from ratslam_core.params import RatSlamParams
 from ratslam_core.pose_cells import activity_kernels as kernels
 from ratslam_core.pose_cells import packet_kernels
 from ratslam_core.pose_cells.network import PoseCells
 from ratslam_core.slam import RatSlam
 
-# Laws read private attributes and do not trust annotations.
-# pyright: reportPrivateUsage=false, reportUnnecessaryIsInstance=false
-
-
+MOST_LIT = 16_384  # cells of the plane above a share of the strongest: many packets, each as wide as its window
+MOST_SONARS = 1024
+MOST_ACTIVITY = 1e6  # packets injected by hand add to the sum of 1 until the next step
 ROUNDING = 1e-6
 
 
-def beats(beats: Beats) -> None:
+def check(brain: RatSlam) -> None:
     """ValueError names the first law that does not hold."""
-    true(isinstance(beats, Beats), f"the beats are a {type(beats).__name__}")
-    true(isinstance(beats._begun, bool), "beats have begun or not")
-    number("the part of a beat that is over", beats._over, -EARLY - ROUNDING, 1.0)
-    number("the way since the last beat", beats._distance_m, -FAR_M, FAR_M)
-    number("the turn since the last beat", beats._turn_rad, -FAR_M, FAR_M)
-    number("the time since the last beat", beats._time_s, 0.0, FAR_M)
+    same_kind("params", brain.params, RatSlamParams())
+    handed = _handed_in(brain)
+    sonars = _sonars(brain)
+    fresh = RatSlam(brain.params, np.random.default_rng(0), sonar_angles_rad=sonars, **handed)
+    same_kind("brain", brain, fresh)
+    _agree(brain, handed)
+    _are_the_brains(brain)
+    if "pose_cells" not in handed:
+        _pose_cells(brain.pose_cells, fresh.pose_cells)
+    if _is_ours(brain.local_view):
+        local_view(brain.local_view)
+    views, shape = len(brain.local_view), brain.pose_cells.shape
+    view_links(brain.view_links, views, math.prod(shape))
+    if "experience_map" not in handed:
+        experience_map(brain.experience_map, views)
+    association = brain.association
+    learnt(association._learnt_s, views, number("time", association._time_s, 0.0, LARGEST))
+    number("learning rate", association.learning_rate, 0.0, 2.0)
+    _goal_memory(brain.goal_memory, number("time under way", brain.memories._under_way_s, 0.0, LARGEST))
+    if brain.occupancy is not None and brain.map_grid is not None:
+        within("log odds", array("log odds", brain.occupancy._log_odds, np.float32, shape[1:]), -BOUND, BOUND)
+        _map_grid(brain.map_grid, len(brain.experience_map), len(sonars))
+    if isinstance(brain.kidnap_detector, KidnapDetector):
+        _kidnap_detector(brain.kidnap_detector, len(brain.experience_map), len(sonars))
+    whole("relocalisations", brain.relocalisations)
+    beats(brain.beats)
 
 
-# Laws look at all of a state, and take nothing for granted.
-# pyright: reportPrivateUsage=false, reportUnnecessaryIsInstance=false
-
-
-MOST_LIT = 16_384  # cells of the plane above a share of the strongest: many packets, each as wide as its window
-MOST_SONARS = 1024
-
-
-def goal_memory(memory: GoalMemory, now_s: float) -> None:
-    """ValueError names the first law that does not hold. now_s: for how long the robot has been under way."""
-    plane = memory.shape[1] * memory.shape[2]
-    place = array("the plane", memory._place, np.int32, (plane,))
-    true(not place.any(), "the plane must be empty between two steps")
-    keys = array("keys", memory._keys, np.int64, (None,))
-    times = array("times", memory._times, np.float32, keys.shape)
-    true(keys.size & (keys.size - 1) == 0, f"the table must have a power of two of places, got {keys.size}")
-    used = keys != FREE
-    links = whole("the number of links", memory._used, 0, keys.size // 2)
-    true(links == np.count_nonzero(used), f"there must be as many keys as links, {links}")
-    within("a key", keys[used], 0, plane * plane - 1)
-    true((keys[used] // plane < keys[used] % plane).all(), "a key must name two cells, the smaller first")
-    true(misplaced(keys) < 0, "each key must lie where it is looked for")
-    within("a time", times[used], 0.0, float(np.finfo(np.float32).max))
-    if memory._last is not None:
-        _iteration(memory._last, memory.shape, now_s)
-
-
-def _iteration(last: _Iteration, shape: tuple[int, int, int], now_s: float) -> None:
-    true(isinstance(last, _Iteration), "the last iteration must be one")
-    flats = array("what was active", last.flats, np.int64, (None,))
-    true(len(np.unique(flats)) == len(flats) <= MOST_LIT, f"at most {MOST_LIT} cells were active, each once")
-    within("what was active", flats, 0, shape[1] * shape[2] - 1)
-    activity = array("its activity", last.activity, np.float64, flats.shape)
-    within("its activity", activity, float(np.finfo(np.float32).tiny), 1e6)
-    number("its x", last.x, 0.0, shape[2])
-    number("its y", last.y, 0.0, shape[1])
-    number("its time", last.time_s, 0.0, number("its latest time", last.latest_s, 0.0, now_s))
-
-
-def occupancy(grid: OccupancyGrid, shape: tuple[int, int, int]) -> int:
-    """Returns how many sonars it is made of. shape: of the pose cells."""
-    angles = array("sonar angles", grid._angles, np.float64, (None,))
+def _sonars(brain: RatSlam) -> tuple[float, ...]:
+    """The angles that a brain like this one is made with; none when there is no occupancy."""
+    true((brain.occupancy is None) == (brain.map_grid is None), "both pictures of occupancy must be there, or none")
+    if brain.occupancy is None:
+        return ()
+    angles = array("sonar angles", brain.occupancy._angles, np.float64, (None,))
     true(angles.size <= MOST_SONARS, f"there are {angles.size} sonars; at most {MOST_SONARS}")
     within("a sonar's angle", angles, -100.0, 100.0)
-    within("log odds", array("log odds", grid._log_odds, np.float32, shape[1:]), -BOUND, BOUND)
-    return angles.size
+    return tuple(angles.tolist())
 
 
-def map_grid(grid: MapGrid, experiences: int, sonars: int) -> None:
-    within("a sonar's angle", array("sonar angles", grid._angles, np.float64, (sonars,)), -100.0, 100.0)
-    count = array("counts of scans", grid._count, np.int64, (None,))
-    scans = array("scans", grid._scans, np.float32, (len(count), KEPT, 3 + sonars))
-    known = whole("experiences with scans", grid._known, 0, min(len(count), experiences))
-    within("a count of scans", count, 0, 2**53)
-    true(not count[known:].any(), f"only the first {known} experiences may have scans")
-    real = scans[:known][np.arange(KEPT) < count[:known, None]]
-    within("where a scan was made", real[:, :3], -FAR_M, FAR_M)
-    within("a range", real[:, 3:], 0.0, math.inf)
+def _is_ours(part: object) -> bool:
+    return type(part).__module__.split(".")[0] == RatSlam.__module__.split(".")[0]
 
 
-# Laws look at all of a state, and take nothing for granted.
-# pyright: reportPrivateUsage=false, reportUnnecessaryIsInstance=false
+def _handed_in(brain: RatSlam) -> dict[str, Any]:
+    """The parts whose class is not ours. Such a part is checked by its own method `check`, if it has one."""
+    parts: dict[str, Any] = {name: getattr(brain, name) for name in ("local_view", "pose_cells", "kidnap_detector")}
+    parts |= {"experience_map": brain.experience_map, "optimiser": getattr(brain.experience_map, "optimiser", None)}
+    handed = {name: part for name, part in parts.items() if part is not None and not _is_ours(part)}
+    for part in handed.values():
+        getattr(part, "check", lambda: None)()
+    front_end = getattr(brain.local_view, "front_end", None)
+    if "local_view" not in handed and not _is_ours(front_end):
+        handed["local_view"] = LocalView(brain.params.local_view, front_end=front_end)
+    return handed
 
 
-MOST_ACTIVITY = 1e6  # packets injected by hand add to the sum of 1 until the next step
+def _agree(brain: RatSlam, handed: dict[str, Any]) -> None:
+    """All parts have the brain's parameters, and the shape and cell size of its pose cells."""
+    p = brain.params
+    parts: list[tuple[Any, object]] = [
+        (brain.view_links, p.local_view), (brain.association, p.local_view), (brain.goal_memory, p.goal_memory),
+        (brain.localisation, p.pose_cells), (brain.memories, p.occupancy),
+    ]  # fmt: skip
+    of_ours = (("pose_cells", p.pose_cells), ("local_view", p.local_view), ("experience_map", p.experience_map))
+    parts += [(getattr(brain, name), own) for name, own in of_ours if name not in handed]
+    for part, own in parts:
+        true(part.params == own, f"the parameters of {type(part).__name__} must be the brain's")
+    shape, cell_m = (p.pose_cells.n_theta, p.pose_cells.n_y, p.pose_cells.n_x), p.pose_cells.cell_m
+    cells = [getattr(brain, name) for name in ("pose_cells", "experience_map") if name not in handed]
+    for part in (*cells, brain.goal_memory):
+        true(part.shape == shape, f"the shape of {type(part).__name__} must be {shape}, got {part.shape}")
+    maps = [brain.experience_map] if "experience_map" not in handed else []
+    lengths: list[Any] = [part for map_ in maps for part in (map_.evidence, map_.pose_filter)]
+    for part in (*maps, *lengths, brain.goal_memory, *((brain.occupancy,) if brain.occupancy else ())):
+        true(part.cell_m == cell_m, f"a cell of {type(part).__name__} must be {cell_m} m wide")
 
 
-def pose_cells(cells: PoseCells, fresh: PoseCells) -> None:
-    """ValueError names the first law that does not hold. fresh: a network that was just made with the same parameters."""
+def _are_the_brains(brain: RatSlam) -> None:
+    """What holds parts of the brain holds no others."""
+    cells, memories = brain.localisation, brain.memories
+    moved = cells.pose_cells is brain.pose_cells and cells.association is brain.association
+    true(moved, "the brain moves other pose cells")
+    held = (memories.goal_memory, memories.occupancy, memories.map_grid)
+    own = (brain.goal_memory, brain.occupancy, brain.map_grid)
+    true(all(a is b for a, b in zip(held, own, strict=True)), "the brain learns in other memories")
+
+
+def _pose_cells(cells: PoseCells, fresh: PoseCells) -> None:
+    """fresh: a network that was just made with the same parameters."""
     _buffers(cells)
     _derived(cells, fresh)
     _activity(cells)
@@ -174,99 +181,47 @@ def _packets(cells: PoseCells) -> None:
     within("a packet's carry", rows[:, packet_kernels.CARRY :], -float(max(cells.shape)), float(max(cells.shape)))
 
 
-# Laws look at all of a state, and take nothing for granted.
-# pyright: reportPrivateUsage=false, reportUnnecessaryIsInstance=false
+def _goal_memory(memory: GoalMemory, now_s: float) -> None:
+    """now_s: for how long the robot has been under way."""
+    plane = memory.shape[1] * memory.shape[2]
+    place = array("the plane", memory._place, np.int32, (plane,))
+    true(not place.any(), "the plane must be empty between two steps")
+    keys = array("keys", memory._keys, np.int64, (None,))
+    times = array("times", memory._times, np.float32, keys.shape)
+    true(keys.size & (keys.size - 1) == 0, f"the table must have a power of two of places, got {keys.size}")
+    used = keys != FREE
+    links = whole("the number of links", memory._used, 0, keys.size // 2)
+    true(links == np.count_nonzero(used), f"there must be as many keys as links, {links}")
+    within("a key", keys[used], 0, plane * plane - 1)
+    true((keys[used] // plane < keys[used] % plane).all(), "a key must name two cells, the smaller first")
+    true(misplaced(keys) < 0, "each key must lie where it is looked for")
+    within("a time", times[used], 0.0, float(np.finfo(np.float32).max))
+    if memory._last is not None:
+        _iteration(memory._last, memory.shape, now_s)
 
 
-def check(brain: RatSlam) -> None:
-    """ValueError names the first law that does not hold."""
-    same_kind("params", brain.params, RatSlamParams())
-    handed = _handed_in(brain)
-    fresh = RatSlam(brain.params, np.random.default_rng(0), sonar_angles_rad=_sonars(brain), **handed)
-    same_kind("brain", brain, fresh)
-    _agree(brain, handed)
-    _are_the_brains(brain)
-    if "pose_cells" not in handed:
-        pose_cells(brain.pose_cells, fresh.pose_cells)
-    if _is_ours(brain.local_view):
-        local_view(brain.local_view)
-    views, shape = len(brain.local_view), brain.pose_cells.shape
-    view_links(brain.view_links, views, math.prod(shape))
-    if "experience_map" not in handed:
-        experience_map(brain.experience_map, views)
-    association = brain.association
-    learnt(association._learnt_s, views, number("time", association._time_s, 0.0, LONGEST))
-    number("learning rate", association.learning_rate, 0.0, 2.0)
-    goal_memory(brain.goal_memory, number("time under way", brain.memories._under_way_s, 0.0, LONGEST))
-    sonars = 0
-    if brain.occupancy is not None and brain.map_grid is not None:
-        sonars = occupancy(brain.occupancy, shape)
-        map_grid(brain.map_grid, len(brain.experience_map), sonars)
-    if isinstance(brain.kidnap_detector, KidnapDetector):
-        _kidnap_detector(brain.kidnap_detector, len(brain.experience_map), sonars)
-    whole("relocalisations", brain.relocalisations)
-    beats(brain.beats)
+def _iteration(last: _Iteration, shape: tuple[int, int, int], now_s: float) -> None:
+    true(isinstance(last, _Iteration), "the last iteration must be one")
+    flats = array("what was active", last.flats, np.int64, (None,))
+    true(len(np.unique(flats)) == len(flats) <= MOST_LIT, f"at most {MOST_LIT} cells were active, each once")
+    within("what was active", flats, 0, shape[1] * shape[2] - 1)
+    activity = array("its activity", last.activity, np.float64, flats.shape)
+    within("its activity", activity, float(np.finfo(np.float32).tiny), 1e6)
+    number("its x", last.x, 0.0, shape[2])
+    number("its y", last.y, 0.0, shape[1])
+    number("its time", last.time_s, 0.0, number("its latest time", last.latest_s, 0.0, now_s))
 
 
-def _sonars(brain: RatSlam) -> tuple[float, ...]:
-    """The angles that a brain like this one is made with; none when there is no occupancy."""
-    true((brain.occupancy is None) == (brain.map_grid is None), "both pictures of occupancy must be there, or none")
-    if brain.occupancy is None:
-        return ()
-    angles = array("sonar angles", brain.occupancy._angles, np.float64, (None,))
-    true(angles.size <= MOST_SONARS, f"there are {angles.size} sonars; at most {MOST_SONARS}")
-    within("a sonar's angle", angles, -100.0, 100.0)
-    return tuple(angles.tolist())
-
-
-def _is_ours(part: object) -> bool:
-    return type(part).__module__.split(".")[0] == RatSlam.__module__.split(".")[0]
-
-
-def _handed_in(brain: RatSlam) -> dict[str, Any]:
-    """The parts whose class is not ours. Such a part is checked by its own method `check`, if it has one."""
-    parts: dict[str, Any] = {name: getattr(brain, name) for name in ("local_view", "pose_cells", "kidnap_detector")}
-    parts |= {"experience_map": brain.experience_map, "optimiser": getattr(brain.experience_map, "optimiser", None)}
-    handed = {name: part for name, part in parts.items() if part is not None and not _is_ours(part)}
-    for part in handed.values():
-        getattr(part, "check", lambda: None)()
-    front_end = getattr(brain.local_view, "front_end", None)
-    if "local_view" not in handed and not _is_ours(front_end):
-        handed["local_view"] = LocalView(brain.params.local_view, front_end=front_end)
-    return handed
-
-
-def _agree(brain: RatSlam, handed: dict[str, Any]) -> None:
-    """All parts have the brain's parameters, and the shape and cell size of its pose cells."""
-    p = brain.params
-    parts: list[tuple[Any, object]] = [
-        (brain.view_links, p.local_view), (brain.association, p.local_view), (brain.goal_memory, p.goal_memory),
-        (brain.localisation, p.pose_cells), (brain.memories, p.occupancy),
-    ]  # fmt: skip
-    of_ours = (("pose_cells", p.pose_cells), ("local_view", p.local_view), ("experience_map", p.experience_map))
-    parts += [(getattr(brain, name), own) for name, own in of_ours if name not in handed]
-    for part, own in parts:
-        true(part.params == own, f"the parameters of {type(part).__name__} must be the brain's")
-    shape, cell_m = (p.pose_cells.n_theta, p.pose_cells.n_y, p.pose_cells.n_x), p.pose_cells.cell_m
-    cells = [getattr(brain, name) for name in ("pose_cells", "experience_map") if name not in handed]
-    for part in (*cells, brain.goal_memory):
-        true(part.shape == shape, f"the shape of {type(part).__name__} must be {shape}, got {part.shape}")
-    maps = [brain.experience_map] if "experience_map" not in handed else []
-    lengths: list[Any] = [part for map_ in maps for part in (map_.evidence, map_.pose_filter)]
-    for part in (*maps, *lengths, brain.goal_memory, *((brain.occupancy,) if brain.occupancy else ())):
-        true(part.cell_m == cell_m, f"a cell of {type(part).__name__} must be {cell_m} m wide")
-
-
-def _are_the_brains(brain: RatSlam) -> None:
-    """What holds parts of the brain holds no others."""
-    cells, memories = brain.localisation, brain.memories
-    true(
-        cells.pose_cells is brain.pose_cells and cells.association is brain.association,
-        "the brain moves other pose cells",
-    )
-    held = (memories.goal_memory, memories.occupancy, memories.map_grid)
-    own = (brain.goal_memory, brain.occupancy, brain.map_grid)
-    true(all(a is b for a, b in zip(held, own, strict=True)), "the brain learns in other memories")
+def _map_grid(grid: MapGrid, experiences: int, sonars: int) -> None:
+    within("a sonar's angle", array("sonar angles", grid._angles, np.float64, (sonars,)), -100.0, 100.0)
+    count = array("counts of scans", grid._count, np.int64, (None,))
+    scans = array("scans", grid._scans, np.float32, (len(count), KEPT, 3 + sonars))
+    known = whole("experiences with scans", grid._known, 0, min(len(count), experiences))
+    within("a count of scans", count, 0, MOST)
+    true(not count[known:].any(), f"only the first {known} experiences may have scans")
+    real = scans[:known][np.arange(KEPT) < count[:known, None]]
+    within("where a scan was made", real[:, :3], -FAR_M, FAR_M)
+    within("a range", real[:, 3:], 0.0, math.inf)
 
 
 def _kidnap_detector(detector: KidnapDetector, experiences: int, sonars: int) -> None:
@@ -277,4 +232,14 @@ def _kidnap_detector(detector: KidnapDetector, experiences: int, sonars: int) ->
     last = detector._scans._last
     if last is not None:
         true(sonars > 0, "a brain without sonars has no last scan")
-        within("the last scan", array("the last scan", last, np.float64, (sonars,)), 0.0, float("inf"))
+        within("the last scan", array("the last scan", last, np.float64, (sonars,)), 0.0, math.inf)
+
+
+def beats(beats: Beats) -> None:
+    """ValueError names the first law that does not hold."""
+    true(isinstance(beats, Beats), f"the beats are a {type(beats).__name__}")
+    true(isinstance(beats._begun, bool), "beats have begun or not")
+    number("the part of a beat that is over", beats._over, -EARLY - ROUNDING, 1.0)
+    number("the way since the last beat", beats._distance_m, -FAR_M, FAR_M)
+    number("the turn since the last beat", beats._turn_rad, -FAR_M, FAR_M)
+    number("the time since the last beat", beats._time_s, 0.0, FAR_M)

@@ -1,9 +1,7 @@
-"""What is true of the experience map between two steps.
+"""What is true between two steps of the experience map, of its experiences and links, and of the local view beneath it."""
 
-What is true of the local view and of its links to the pose cells between two steps.
-
-What is true of experiences and of the links between them between two steps.
-"""
+# Laws look at all of a state, and take nothing for granted.
+# pyright: reportPrivateUsage=false, reportUnnecessaryIsInstance=false
 
 from __future__ import annotations
 
@@ -27,84 +25,99 @@ from ratslam_core.pose_graph.experiences import BUCKET, Experiences
 from ratslam_core.pose_graph.transitions import BEHAVIOURS, Adjacency, PreintegratedOdometry, Transitions
 from ratslam_core.types import Recognition
 
-# Laws look at all of a state, and take nothing for granted.
-# pyright: reportPrivateUsage=false, reportUnnecessaryIsInstance=false
+LARGEST = 1e12  # of metres, seconds and weights
+FASTEST = 10.0  # rad/s, the largest yaw bias
 
 
-def local_view(view: LocalView) -> None:
-    """ValueError names the first law that does not hold."""
-    size = whole("columns", view.front_end.columns, 1, 4096) * whole("rows", view.front_end.rows, 1, 4096)
-    size += whole("echoes", view.front_end.echoes, 0, 4096)
-    known = array("templates", view._templates, np.uint8, (None, size))
-    true(len(known) > 1, "templates must have room to grow by half")
-    count = whole("the number of views", view._count, 0, len(known))
-    array("features", view.features, np.uint8, (size,))
-    if view._last is not None:
-        array("the last features", view._last, np.uint8, (size,))
-    number("surprise", view.image_change, 0.0)
-    whole("false positives", view.false_positives)
-    _recognition(view.recognition, count)
-    for matcher in (view._matcher,):
-        _matcher(matcher, matcher_of(view.front_end))
+def experience_map(map_: ExperienceMap, views: int) -> None:
+    """ValueError names the first law that does not hold. views: how many local view cells there are."""
+    true(map_._experiences.shape == map_.shape, "the experiences must be of the same pose cells")
+    true(map_._temporal_map._map is map_, "the temporal map must be of the same experiences")
+    experiences(map_._experiences, views)
+    n = len(map_)
+    within("an island", map_._experiences.island[:n], 0, map_.islands.begun)
+    transitions(map_.transitions, n)
+    whole("the active experience", map_.here, 0 if n else -1, n - 1)
+    pose("the robot's place", map_.pose_filter.local)
+    number("how far off it may be", map_.pose_filter.sigma_m, 0.0, LARGEST)
+    pose("offset", map_._offset)
+    pose("travel", map_._travel)
+    for name in ("_driven_m", "_driving_s", "_sigma"):
+        number(name[1:], getattr(map_, name), 0.0, LARGEST)
+    number("yaw bias", map_.yaw_bias, -FASTEST, FASTEST)
+    for name in ("closures", "steps", "corrected"):
+        whole(name, getattr(map_, name))
+    _leg(map_._leg)
+    if isinstance(map_._edges, OdometryEdges):
+        whole("the latest experience", map_._edges.latest, -1, n - 1)
+        _leg(map_._edges.since)
+    if isinstance(map_.ground, FamiliarGround):
+        _ground(map_.ground, n, views)
+    if isinstance(map_.optimiser, ExactSolver):
+        _solver(map_.optimiser)
+    if map_._arrival is not None:
+        _arrival(map_._arrival, map_.transitions.count)
+    whole("the latest island", map_.islands.begun)
+    whole("the island", map_.islands.current, 0, map_.islands.begun)
+    whole("joined islands", map_.islands.joined, 0, map_.islands.begun)
+    if map_.islands.merge is not None:
+        whole("the first experience of a merge", map_.islands.merge.first, 0, n)
+        number("the log odds of a merge", map_.islands.merge.log_odds, -LARGEST, LARGEST)
+    _evidence(map_.evidence, n, map_.islands.begun)
 
 
-def _recognition(seen: Recognition, count: int) -> None:
-    whole("the recognised view", seen.view, -1, count - 1)
-    whole("the best view", seen.best_view, -1, count - 1)
-    number("its difference", seen.difference, 0.0)
-    if seen.facing_rad is not None:
-        number("its facing", seen.facing_rad, -20.0, 20.0)
+def _evidence(evidence: Evidence, n: int, submaps: int) -> None:
+    whole("experiences among which the evidence is", evidence.known, 0, n)
+    whole("hypotheses", evidence._count, 0, MOST_HYPOTHESES)
+    rows = array("hypotheses", evidence._rows, np.float64, (MOST_HYPOTHESES, 7))
+    within("a hypothesis", rows[:, :CEILING], -FAR_M, FAR_M)
+    true(not np.isnan(rows[:, CEILING]).any(), "a hypothesis must have a ceiling")
+    within("a hypothesis' submap", rows[: evidence._count, SUBMAP], 0, submaps)
+    number("the way since the last observation", evidence._units, 0.0, 1.0)
+    number("the way since a doubt", evidence._quiet, 0.0, LARGEST)
+    number("log odds of here", evidence.here, -FAR_M, FAR_M)
+    for name in ("sure", "in_doubt"):
+        true(isinstance(getattr(evidence, name), bool), f"{name} must be true or false")
+    if evidence.belief is not None:
+        true(isinstance(evidence.belief, Belief), "what is believed must be a belief")
+        whole("the experience that is believed", evidence.belief.experience, 0, n - 1)
+        pose("the place that is believed", evidence.belief.pose)
+        number("log odds", evidence.belief.log_odds, -FAR_M, FAR_M)
+        number("the facing that is believed", evidence.belief.facing_rad, -FAR_M, FAR_M)
 
 
-def _matcher(matcher: Matcher, fresh: Matcher) -> None:
-    same = (matcher.columns, matcher.rows) == (fresh.columns, fresh.rows)
-    true(same, "the matcher must be of the front end's columns and rows")
-    if isinstance(matcher, EchoMatcher) and isinstance(fresh, EchoMatcher):
-        same = (matcher.echoes, matcher.echo_weight) == (fresh.echoes, fresh.echo_weight)
-        true(same, "the matcher must weigh echoes as the front end does")
-        whole("where the search begins", matcher._guess, 0)
-    true(type(matcher) is type(fresh), "the matcher must be of the front end's kind")
-    array("masks", matcher._masks, np.uint8, fresh._masks.shape)
-    true(np.array_equal(matcher._masks, fresh._masks), "masks must be those of the shifts")
-    shifted = array("the shifted view", matcher._shifted, np.uint8, fresh._shifted.shape)
-    true(not (shifted & ~fresh._masks).any(), "the shifted view must be empty where nothing overlaps")
-    array("least", matcher._least, np.int32, fresh._least.shape)
-    array("at", matcher._at, np.int64, fresh._at.shape)
+def _ground(ground: FamiliarGround, n: int, views: int) -> None:
+    for name in ("spared", "adopted", "links_spared", "views_faded"):
+        whole(name, getattr(ground, name))
+    share = array("shares", ground._share, np.float64, (None,))
+    true(len(share) >= n, "each experience must have a share of recognised sights")
+    within("a share", share, 0.0, 1.0)
+    unseen = array("unseen", ground._unseen, np.int64, share.shape)
+    within("a count of sights", unseen, 0, MOST)
+    whole("the faded view", ground.faded, -1, views - 1)
+    near = array("what is near", ground._near, np.int64, (MOST_NEAR,))
+    within("an experience nearby", near[: whole("how many are near", ground._found, 0, MOST_NEAR)], 0, n - 1)
 
 
-def view_links(links: ViewLinks, views: int, cells: int) -> None:
-    """views: how many are known; cells: how many pose cells there are."""
-    size = len(array("linked cells", links._cells, np.int32, (None,)))
-    strength = array("strengths", links._strength, np.float32, (size,))
-    start, used, room = array("blocks", links._blocks, np.int64, (None, 3)).T
-    whole("forgotten links", links.forgotten)
-    array("seen", links._seen, np.bool_, (None,))
-    apart("blocks of links", start, room, whole("their end", links._end, 0, size), size)
-    true(((used >= 0) & (used <= room)).all(), "a block of links must have room for those in use")
-    true(not used[views:].any(), f"only the {views} known views may have links")
-    at = places(start, used)
-    within("a linked cell", links._cells[at], 0, cells - 1)
-    within("a strength", strength[at], 0.0, float(np.finfo(np.float32).max))
+def _solver(solver: ExactSolver) -> None:
+    for name in ("_solved_at", "_closures_at_solve"):
+        whole(name, getattr(solver, name))
+    number("the rest after a solution", solver._rest_after_solve, 0.0, LARGEST)
 
 
-def places(start: NDArray[np.int64], used: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Where in an arena the blocks' entries in use lie, block after block."""
-    begins = np.cumsum(used) - used
-    return np.arange(int(used.sum())) + np.repeat(start - begins, used)
+def _leg(leg: PreintegratedOdometry) -> None:
+    pose("a leg's move", leg.moved)
+    for name in ("way_m", "turning_s", "time_s"):
+        number(f"a leg's {name}", getattr(leg, name), 0.0, LARGEST)
 
 
-def learnt(times_s: list[float], views: int, now_s: float) -> None:
-    """When each view was recruited."""
-    true(len(times_s) == views, f"each of {views} views must have a time, got {len(times_s)}")
-    for time_s in times_s:
-        number("when a view was recruited", time_s, 0.0, now_s)
-
-
-# Laws look at all of a state, and take nothing for granted.
-# pyright: reportPrivateUsage=false, reportUnnecessaryIsInstance=false
-
-
-LARGEST = 1e12  # of weights and seconds
+def _arrival(arrival: _Arrival, rows: int) -> None:
+    true(isinstance(arrival, _Arrival), "the arrival must be one")
+    whole("the arrival's row", arrival.row, 0, rows - 1)
+    within("the arrival's move", array("the arrival's move", arrival.move, np.float64, (3,)), -FAR_M, FAR_M)
+    number("the arrival's weight", arrival.weight, 0.0, LARGEST)
+    pose("where the robot came from", arrival.came)
+    number("the arrival's sigma", arrival.sigma, 0.0, LARGEST)
 
 
 def experiences(known: Experiences, views: int) -> None:
@@ -152,24 +165,9 @@ def _before(keys: NDArray[np.int64]) -> tuple[NDArray[np.int64], dict[int, int]]
     return before, dict(zip(keys[last].tolist(), last.tolist(), strict=True))
 
 
-def adjacency(graph: Adjacency, nodes: int) -> None:
-    room = len(array("start", graph.start, np.uint32, (None,)))
-    used, rooms = (array(name, a, np.uint32, (room,)) for name, a in (("used", graph.used), ("room", graph._room)))
-    size = len(array("half-edges", graph.half, np.uint32, (None,)))
-    other = array("other ends", graph.other, np.uint32, (size,))
-    true(whole("the number of nodes", graph._nodes, 0, room) == nodes, f"there must be {nodes} nodes")
-    apart("blocks of half-edges", graph.start[:nodes], rooms[:nodes], whole("their end", graph._end, 0, size), size)
-    true((rooms[:nodes] > 0).all(), "a block of half-edges must have room to double")
-    true((used[:nodes] <= rooms[:nodes]).all(), "a block of half-edges must have room for those in use")
-    at = places(graph.start[:nodes].astype(np.int64), used[:nodes].astype(np.int64))
-    if nodes:
-        within("an other end", other[at], 0, nodes - 1)
-    whole("changes", graph.changes)
-
-
 def transitions(t: Transitions, nodes: int) -> None:
     """nodes: how many experiences there are."""
-    adjacency(t.graph, nodes)
+    _adjacency(t.graph, nodes)
     room = len(array("ends", t.ends, np.int64, (None, 2)))
     n = whole("the number of transitions", t.count, 0, room)
     array("moves", t.move, np.float64, (room, 3))
@@ -198,10 +196,25 @@ def transitions(t: Transitions, nodes: int) -> None:
     _halves(t, n, nodes)
 
 
+def _adjacency(graph: Adjacency, nodes: int) -> None:
+    room = len(array("start", graph.start, np.uint32, (None,)))
+    used, rooms = (array(name, a, np.uint32, (room,)) for name, a in (("used", graph.used), ("room", graph._room)))
+    size = len(array("half-edges", graph.half, np.uint32, (None,)))
+    other = array("other ends", graph.other, np.uint32, (size,))
+    true(whole("the number of nodes", graph._nodes, 0, room) == nodes, f"there must be {nodes} nodes")
+    apart("blocks of half-edges", graph.start[:nodes], rooms[:nodes], whole("their end", graph._end, 0, size), size)
+    true((rooms[:nodes] > 0).all(), "a block of half-edges must have room to double")
+    true((used[:nodes] <= rooms[:nodes]).all(), "a block of half-edges must have room for those in use")
+    at = _places(graph.start[:nodes].astype(np.int64), used[:nodes].astype(np.int64))
+    if nodes:
+        within("an other end", other[at], 0, nodes - 1)
+    whole("changes", graph.changes)
+
+
 def _halves(t: Transitions, n: int, nodes: int) -> None:
     """Every row appears twice, at its beginning and at its end, and each of the two names the other."""
     graph, used = t.graph, t.graph.used[:nodes].astype(np.int64)
-    at = places(graph.start[:nodes].astype(np.int64), used)
+    at = _places(graph.start[:nodes].astype(np.int64), used)
     half, other = graph.half[at].astype(np.int64), graph.other[at].astype(np.int64)
     node = np.repeat(np.arange(nodes), used)
     true(np.array_equal(np.sort(half), np.arange(2 * n)), "each transition must have its two half-edges")
@@ -210,100 +223,69 @@ def _halves(t: Transitions, n: int, nodes: int) -> None:
     true(right.all(), "a half-edge must name the ends of its transition")
 
 
-# Laws look at all of a state, and take nothing for granted.
-# pyright: reportPrivateUsage=false, reportUnnecessaryIsInstance=false
+def _places(start: NDArray[np.int64], used: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Where in an arena the blocks' entries in use lie, block after block."""
+    begins = np.cumsum(used) - used
+    return np.arange(int(used.sum())) + np.repeat(start - begins, used)
 
 
-LONGEST = 1e12  # metres and seconds
-FASTEST = 10.0  # rad/s, the largest yaw bias
+def local_view(view: LocalView) -> None:
+    """ValueError names the first law that does not hold."""
+    size = whole("columns", view.front_end.columns, 1, 4096) * whole("rows", view.front_end.rows, 1, 4096)
+    size += whole("echoes", view.front_end.echoes, 0, 4096)
+    known = array("templates", view._templates, np.uint8, (None, size))
+    true(len(known) > 1, "templates must have room to grow by half")
+    count = whole("the number of views", view._count, 0, len(known))
+    array("features", view.features, np.uint8, (size,))
+    if view._last is not None:
+        array("the last features", view._last, np.uint8, (size,))
+    number("surprise", view.image_change, 0.0)
+    whole("false positives", view.false_positives)
+    _recognition(view.recognition, count)
+    _matcher(view._matcher, matcher_of(view.front_end))
 
 
-def experience_map(map_: ExperienceMap, views: int) -> None:
-    """ValueError names the first law that does not hold. views: how many local view cells there are."""
-    true(map_._experiences.shape == map_.shape, "the experiences must be of the same pose cells")
-    true(map_._temporal_map._map is map_, "the temporal map must be of the same experiences")
-    experiences(map_._experiences, views)
-    n = len(map_)
-    within("an island", map_._experiences.island[:n], 0, map_.islands.begun)
-    transitions(map_.transitions, n)
-    whole("the active experience", map_.here, 0 if n else -1, n - 1)
-    pose("the robot's place", map_.pose_filter.local)
-    number("how far off it may be", map_.pose_filter.sigma_m, 0.0, LONGEST)
-    pose("offset", map_._offset)
-    pose("travel", map_._travel)
-    for name in ("_driven_m", "_driving_s", "_sigma"):
-        number(name[1:], getattr(map_, name), 0.0, LONGEST)
-    number("yaw bias", map_.yaw_bias, -FASTEST, FASTEST)
-    for name in ("closures", "steps", "corrected"):
-        whole(name, getattr(map_, name))
-    _leg(map_._leg)
-    if isinstance(map_._edges, OdometryEdges):
-        whole("the latest experience", map_._edges.latest, -1, n - 1)
-        _leg(map_._edges.since)
-    if isinstance(map_.ground, FamiliarGround):
-        _ground(map_.ground, n, views)
-    if isinstance(map_.optimiser, ExactSolver):
-        _solver(map_.optimiser)
-    if map_._arrival is not None:
-        _arrival(map_._arrival, map_.transitions.count)
-    whole("the latest island", map_.islands.begun)
-    whole("the island", map_.islands.current, 0, map_.islands.begun)
-    whole("joined islands", map_.islands.joined, 0, map_.islands.begun)
-    if map_.islands.merge is not None:
-        whole("the first experience of a merge", map_.islands.merge.first, 0, n)
-        number("the log odds of a merge", map_.islands.merge.log_odds, -LONGEST, LONGEST)
-    _evidence(map_.evidence, n, map_.islands.begun)
+def _recognition(seen: Recognition, count: int) -> None:
+    whole("the recognised view", seen.view, -1, count - 1)
+    whole("the best view", seen.best_view, -1, count - 1)
+    number("its difference", seen.difference, 0.0)
+    if seen.facing_rad is not None:
+        number("its facing", seen.facing_rad, -20.0, 20.0)
 
 
-def _evidence(evidence: Evidence, n: int, submaps: int) -> None:
-    whole("experiences among which the evidence is", evidence.known, 0, n)
-    whole("hypotheses", evidence._count, 0, MOST_HYPOTHESES)
-    rows = array("hypotheses", evidence._rows, np.float64, (MOST_HYPOTHESES, 7))
-    within("a hypothesis", rows[:, :CEILING], -FAR_M, FAR_M)
-    true(not np.isnan(rows[:, CEILING]).any(), "a hypothesis must have a ceiling")
-    within("a hypothesis' submap", rows[: evidence._count, SUBMAP], 0, submaps)
-    number("the way since the last observation", evidence._units, 0.0, 1.0)
-    number("the way since a doubt", evidence._quiet, 0.0, LONGEST)
-    number("log odds of here", evidence.here, -FAR_M, FAR_M)
-    for name in ("sure", "in_doubt"):
-        true(isinstance(getattr(evidence, name), bool), f"{name} must be true or false")
-    if evidence.belief is not None:
-        true(isinstance(evidence.belief, Belief), "what is believed must be a belief")
-        whole("the experience that is believed", evidence.belief.experience, 0, n - 1)
-        pose("the place that is believed", evidence.belief.pose)
-        number("log odds", evidence.belief.log_odds, -FAR_M, FAR_M)
-        number("the facing that is believed", evidence.belief.facing_rad, -FAR_M, FAR_M)
+def _matcher(matcher: Matcher, fresh: Matcher) -> None:
+    same = (matcher.columns, matcher.rows) == (fresh.columns, fresh.rows)
+    true(same, "the matcher must be of the front end's columns and rows")
+    if isinstance(matcher, EchoMatcher) and isinstance(fresh, EchoMatcher):
+        same = (matcher.echoes, matcher.echo_weight) == (fresh.echoes, fresh.echo_weight)
+        true(same, "the matcher must weigh echoes as the front end does")
+        whole("where the search begins", matcher._guess, 0)
+    true(type(matcher) is type(fresh), "the matcher must be of the front end's kind")
+    array("masks", matcher._masks, np.uint8, fresh._masks.shape)
+    true(np.array_equal(matcher._masks, fresh._masks), "masks must be those of the shifts")
+    shifted = array("the shifted view", matcher._shifted, np.uint8, fresh._shifted.shape)
+    true(not (shifted & ~fresh._masks).any(), "the shifted view must be empty where nothing overlaps")
+    array("least", matcher._least, np.int32, fresh._least.shape)
+    array("at", matcher._at, np.int64, fresh._at.shape)
 
 
-def _ground(ground: FamiliarGround, n: int, views: int) -> None:
-    for name in ("spared", "adopted", "links_spared", "views_faded"):
-        whole(name, getattr(ground, name))
-    share = array("shares", ground._share, np.float64, (None,))
-    true(len(share) >= n, "each experience must have a share of recognised sights")
-    within("a share", share, 0.0, 1.0)
-    unseen = array("unseen", ground._unseen, np.int64, share.shape)
-    within("a count of sights", unseen, 0, MOST)
-    whole("the faded view", ground.faded, -1, views - 1)
-    near = array("what is near", ground._near, np.int64, (MOST_NEAR,))
-    within("an experience nearby", near[: whole("how many are near", ground._found, 0, MOST_NEAR)], 0, n - 1)
+def view_links(links: ViewLinks, views: int, cells: int) -> None:
+    """views: how many are known; cells: how many pose cells there are."""
+    size = len(array("linked cells", links._cells, np.int32, (None,)))
+    strength = array("strengths", links._strength, np.float32, (size,))
+    start, used, room = array("blocks", links._blocks, np.int64, (None, 3)).T
+    whole("forgotten links", links.forgotten)
+    array("seen", links._seen, np.bool_, (None,))
+    apart("blocks of links", start, room, whole("their end", links._end, 0, size), size)
+    true(((used >= 0) & (used <= room)).all(), "a block of links must have room for those in use")
+    true(not used[views:].any(), f"only the {views} known views may have links")
+    at = _places(start, used)
+    within("a linked cell", links._cells[at], 0, cells - 1)
+    within("a strength", strength[at], 0.0, float(np.finfo(np.float32).max))
 
 
-def _solver(solver: ExactSolver) -> None:
-    for name in ("_solved_at", "_closures_at_solve"):
-        whole(name, getattr(solver, name))
-    number("the rest after a solution", solver._rest_after_solve, 0.0, LONGEST)
-
-
-def _leg(leg: PreintegratedOdometry) -> None:
-    pose("a leg's move", leg.moved)
-    for name in ("way_m", "turning_s", "time_s"):
-        number(f"a leg's {name}", getattr(leg, name), 0.0, LONGEST)
-
-
-def _arrival(arrival: _Arrival, rows: int) -> None:
-    true(isinstance(arrival, _Arrival), "the arrival must be one")
-    whole("the arrival's row", arrival.row, 0, rows - 1)
-    within("the arrival's move", array("the arrival's move", arrival.move, np.float64, (3,)), -FAR_M, FAR_M)
-    number("the arrival's weight", arrival.weight, 0.0, LARGEST)
-    pose("where the robot came from", arrival.came)
-    number("the arrival's sigma", arrival.sigma, 0.0, LONGEST)
+def learnt(times_s: list[float], views: int, now_s: float) -> None:
+    """When each view was recruited."""
+    true(len(times_s) == views, f"each of {views} views must have a time, got {len(times_s)}")
+    for time_s in times_s:
+        number("when a view was recruited", time_s, 0.0, now_s)

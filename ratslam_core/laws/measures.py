@@ -1,7 +1,7 @@
-"""The checks that laws are made of. When one fails, a ValueError names the value and says what would be right.
+"""The checks that laws are made of. When one fails, a ValueError names the value and says what would be right."""
 
-Every attribute is of the type that it has in a brain that was just made.
-"""
+# Of a value of any type, isinstance tells the checker no more than "an array or a number of unknown type".
+# pyright: reportUnknownArgumentType=false, reportUnknownMemberType=false, reportUnknownVariableType=false
 
 from __future__ import annotations
 
@@ -15,13 +15,14 @@ from numpy.typing import NDArray
 from disk.kinds import is_known
 from ratslam_core.types import Pose2
 
-# Of a value of any type, isinstance tells the checker no more than "an array or a number of unknown type".
-# pyright: reportUnknownArgumentType=false, reportUnknownMemberType=false, reportUnknownVariableType=false
-
-
 MOST = 2**53  # a double counts whole numbers exactly up to here
 FAR_M = 1e6  # no robot drives so far
 TURN = math.pi + 1e-6  # a wrapped angle, give or take its rounding
+_PLAIN: tuple[tuple[type, tuple[type, ...]], ...] = (
+    (bool, (bool, np.bool_)),
+    (int, (int, np.integer)),
+    (float, (float, int, np.floating)),
+)
 
 
 def true(holds: object, words: str) -> None:
@@ -49,6 +50,13 @@ def pose(name: str, value: object) -> None:
     number(f"{name}.x", value.x, -FAR_M, FAR_M)
     number(f"{name}.y", value.y, -FAR_M, FAR_M)
     number(f"{name}.heading_rad", value.heading_rad, -TURN, TURN)
+
+
+def _short(value: object) -> str:
+    if isinstance(value, list | tuple | dict | np.ndarray):
+        return f"a {type(value).__name__}"
+    text = f"{value:g}" if isinstance(value, float) else str(value)
+    return text if len(text) <= 60 else f"{text[:60]}..."
 
 
 def array(name: str, value: object, kind: Any, shape: tuple[int | None, ...]) -> NDArray[Any]:
@@ -86,26 +94,9 @@ def apart(name: str, start: NDArray[Any], room: NDArray[Any], end: int, size: in
     true((start[1:] >= (start + room)[:-1]).all(), f"{name} must not overlap")
 
 
-def _short(value: object) -> str:
-    if isinstance(value, list | tuple | dict | np.ndarray):
-        return f"a {type(value).__name__}"
-    text = f"{value:g}" if isinstance(value, float) else str(value)
-    return text if len(text) <= 60 else f"{text[:60]}..."
-
-
-# Of a value of any type, isinstance tells the checker no more than "an array or a number of unknown type".
-# pyright: reportUnknownArgumentType=false, reportUnknownMemberType=false, reportUnknownVariableType=false
-
-
-_PLAIN: tuple[tuple[type, tuple[type, ...]], ...] = (
-    (bool, (bool, np.bool_)),
-    (int, (int, np.integer)),
-    (float, (float, int, np.floating)),
-)
-
-
 def same_kind(name: str, value: Any, fresh: Any, seen: set[tuple[int, int]] | None = None) -> None:
-    """ValueError when a value is not of the type, dtype or length of `fresh`. What is None in a new brain is left to the laws."""
+    """ValueError when a value is not of the type, dtype or length that `fresh` has, as each attribute in a brain that was
+    just made. What is None in a new brain is left to the laws."""
     seen = set() if seen is None else seen
     if fresh is None or (id(value), id(fresh)) in seen:
         return
@@ -140,10 +131,8 @@ def _same_attributes(name: str, value: Any, fresh: Any, seen: set[tuple[int, int
 
 
 def _may_be_none(kind: type, attribute: str) -> bool:
-    declared = (
-        {item.name: str(item.type) for item in dataclasses.fields(kind)} if dataclasses.is_dataclass(kind) else {}
-    )
-    return declared.get(attribute, "").endswith("| None")
+    fields = dataclasses.fields(kind) if dataclasses.is_dataclass(kind) else ()
+    return any(item.name == attribute and str(item.type).endswith("| None") for item in fields)
 
 
 def attributes(value: Any) -> dict[str, Any]:

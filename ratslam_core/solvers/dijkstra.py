@@ -5,11 +5,6 @@ Dijkstra's algorithm on a binary heap. A node whose time fell stands in it twice
 is that of the next node on the way plus that of the link, rounded. Such sums only grow, so the least of them do not
 depend on the order in which they are found. Starting afresh and mending an older tree therefore end at the same bits:
 test_temporal_map.py::test_a_map_that_was_mended_is_as_good_as_new.
-
-links: start, used, half, other of an `Adjacency` and the seconds of each row, inf for no way.
-near: poses, reach (m, 0 = no shortcuts), pace (s/m), and the grid of `buckets`.
-
-A binary heap of nodes by their times: the entry of the least time comes first.
 """
 
 from __future__ import annotations
@@ -21,53 +16,14 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-Whole: TypeAlias = int | np.integer[Any]
-Heap: TypeAlias = tuple[NDArray[np.float64], NDArray[np.uint32]]  # times, and the node of each
-
-
-@njit(cache=True, nogil=True)
-def twice(heap: Heap) -> Heap:
-    """The heap with twice the room."""
-    return np.concatenate((heap[0], heap[0])), np.concatenate((heap[1], heap[1]))
-
-
-@njit(cache=True, nogil=True, inline="always")
-def push(size: Whole, heap: Heap, time: float, node: Whole) -> None:
-    """Add an entry to the `size` that there are; there must be room."""
-    key, name = heap
-    one, at = np.uint64(1), np.uint64(size)
-    while at:
-        above = (at - one) >> one
-        if key[above] <= time:
-            break
-        key[at], name[at] = key[above], name[above]
-        at = above
-    key[at], name[at] = time, node
-
-
-@njit(cache=True, nogil=True, inline="always")
-def pop(size: Whole, heap: Heap) -> None:
-    """Remove the entry of the least time; `size` entries are left."""
-    key, name = heap
-    one, at, end = np.uint64(1), np.uint64(0), np.uint64(size)
-    last, node = key[end], name[end]
-    while True:
-        below = (at << one) + one
-        if below >= end:
-            break
-        if below + one < end and key[below + one] < key[below]:
-            below += one
-        if last <= key[below]:
-            break
-        key[at], name[at] = key[below], name[below]
-        at = below
-    key[at], name[at] = last, node
-
-
+# start, used, half, other of an `Adjacency`, and the seconds of each row, inf for no way
 Links: TypeAlias = tuple[
     NDArray[np.uint32], NDArray[np.uint32], NDArray[np.uint32], NDArray[np.uint32], NDArray[np.float64]
 ]
+# poses, reach (m, 0 = no shortcuts), pace (s/m), and the grid of `buckets`
 Near: TypeAlias = tuple[NDArray[np.float64], float, float, NDArray[np.int32], NDArray[np.int32]]
+Heap: TypeAlias = tuple[NDArray[np.float64], NDArray[np.uint32]]  # times, the least first, and the node of each
+Whole: TypeAlias = int | np.integer[Any]
 LEAST_S = 1e-3  # no link takes less, so that no way leads round in circles
 
 
@@ -120,71 +76,6 @@ def mend(
             push(size, heap, times[node], node)
             size += 1
     _settle(size, heap, times, parent, links, near)
-
-
-@njit(cache=True, nogil=True)
-def trace(start: int, times: NDArray[np.float64], links: Links, near: Near) -> NDArray[np.int64]:
-    """Nodes of the quickest way to a goal, where the time is 0; among equal ways, the one whose next node has the lowest
-    number."""
-    path: list[Whole] = [start]
-    node: Whole = start
-    other: Whole
-    while times[node] > 0:
-        best: Whole = len(times)
-        begin, used, _, others, _ = links
-        for at in range(begin[node], begin[node] + used[node]):
-            other = np.int64(others[at])
-            if other < best and times[other] + _between(node, other, links, near) == times[node]:
-                best = other
-        poses, reach, _, heads, following = near
-        if reach > 0:
-            for k in range(9):
-                other = heads[_bucket(poses[node, 0], poses[node, 1], reach, k, len(heads))]
-                while other >= 0:
-                    if other < best and times[other] + _between(node, other, links, near) == times[node]:
-                        best = other
-                    other = following[other]
-        node = best
-        path.append(node)
-    return np.array(path)
-
-
-@njit(cache=True, nogil=True)
-def buckets(poses: NDArray[np.float64], reach: float) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
-    """A grid of cells as wide as the reach, hashed: the first node of each bucket, and the one after each node."""
-    size = 16
-    while size < len(poses):
-        size *= 2
-    heads, following = np.full(size, -1, np.int32), np.full(len(poses), -1, np.int32)
-    for node in range(len(poses) - 1, -1, -1):
-        bucket = _bucket(poses[node, 0], poses[node, 1], reach, 4, size)
-        following[node] = heads[bucket]
-        heads[bucket] = node
-    return heads, following
-
-
-@njit(cache=True, nogil=True, inline="always")
-def _bucket(x: float, y: float, reach: float, k: int, size: Whole) -> Whole:
-    """Bucket of the k-th of the nine cells around a place; number 4 is its own. `size` is a power of two."""
-    column, row = np.int64(math.floor(x / reach)) + k % 3 - 1, np.int64(math.floor(y / reach)) + k // 3 - 1
-    return (column * 73856093 ^ row * 19349663) & (size - 1)
-
-
-@njit(cache=True, nogil=True, inline="always")
-def _between(a: Whole, b: Whole, links: Links, near: Near) -> float:
-    """Seconds between two nodes: of the quickest link, else of the shortcut; inf when there is neither."""
-    start, used, halves, others, seconds = links
-    least = np.inf
-    begin = np.uint64(start[a])
-    for at in range(begin, begin + np.uint64(used[a])):
-        if others[at] == np.uint32(b):
-            least = min(least, seconds[np.uint64(halves[at] >> np.uint32(1))])
-    poses, reach, pace, _, _ = near
-    if reach > 0 and least == np.inf:
-        apart = math.hypot(poses[a, 0] - poses[b, 0], poses[a, 1] - poses[b, 1])
-        if apart < reach:
-            least = max(LEAST_S, pace * apart)
-    return least
 
 
 @njit(cache=True, nogil=True, inline="always")
@@ -240,3 +131,107 @@ def _settle(
                         push(size, heap, time, near_by)
                         size += 1
                     near_by = following[near_by]
+
+
+@njit(cache=True, nogil=True)
+def trace(start: int, times: NDArray[np.float64], links: Links, near: Near) -> NDArray[np.int64]:
+    """Nodes of the quickest way to a goal, where the time is 0; among equal ways, the one whose next node has the lowest
+    number."""
+    path: list[Whole] = [start]
+    node: Whole = start
+    other: Whole
+    while times[node] > 0:
+        best: Whole = len(times)
+        begin, used, _, others, _ = links
+        for at in range(begin[node], begin[node] + used[node]):
+            other = np.int64(others[at])
+            if other < best and times[other] + _between(node, other, links, near) == times[node]:
+                best = other
+        poses, reach, _, heads, following = near
+        if reach > 0:
+            for k in range(9):
+                other = heads[_bucket(poses[node, 0], poses[node, 1], reach, k, len(heads))]
+                while other >= 0:
+                    if other < best and times[other] + _between(node, other, links, near) == times[node]:
+                        best = other
+                    other = following[other]
+        node = best
+        path.append(node)
+    return np.array(path)
+
+
+@njit(cache=True, nogil=True, inline="always")
+def _between(a: Whole, b: Whole, links: Links, near: Near) -> float:
+    """Seconds between two nodes: of the quickest link, else of the shortcut; inf when there is neither."""
+    start, used, halves, others, seconds = links
+    least = np.inf
+    begin = np.uint64(start[a])
+    for at in range(begin, begin + np.uint64(used[a])):
+        if others[at] == np.uint32(b):
+            least = min(least, seconds[np.uint64(halves[at] >> np.uint32(1))])
+    poses, reach, pace, _, _ = near
+    if reach > 0 and least == np.inf:
+        apart = math.hypot(poses[a, 0] - poses[b, 0], poses[a, 1] - poses[b, 1])
+        if apart < reach:
+            least = max(LEAST_S, pace * apart)
+    return least
+
+
+@njit(cache=True, nogil=True)
+def buckets(poses: NDArray[np.float64], reach: float) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
+    """A grid of cells as wide as the reach, hashed: the first node of each bucket, and the one after each node."""
+    size = 16
+    while size < len(poses):
+        size *= 2
+    heads, following = np.full(size, -1, np.int32), np.full(len(poses), -1, np.int32)
+    for node in range(len(poses) - 1, -1, -1):
+        bucket = _bucket(poses[node, 0], poses[node, 1], reach, 4, size)
+        following[node] = heads[bucket]
+        heads[bucket] = node
+    return heads, following
+
+
+@njit(cache=True, nogil=True, inline="always")
+def _bucket(x: float, y: float, reach: float, k: int, size: Whole) -> Whole:
+    """Bucket of the k-th of the nine cells around a place; number 4 is its own. `size` is a power of two."""
+    column, row = np.int64(math.floor(x / reach)) + k % 3 - 1, np.int64(math.floor(y / reach)) + k // 3 - 1
+    return (column * 73856093 ^ row * 19349663) & (size - 1)
+
+
+@njit(cache=True, nogil=True, inline="always")
+def push(size: Whole, heap: Heap, time: float, node: Whole) -> None:
+    """Add an entry to the `size` that there are; there must be room."""
+    key, name = heap
+    one, at = np.uint64(1), np.uint64(size)
+    while at:
+        above = (at - one) >> one
+        if key[above] <= time:
+            break
+        key[at], name[at] = key[above], name[above]
+        at = above
+    key[at], name[at] = time, node
+
+
+@njit(cache=True, nogil=True, inline="always")
+def pop(size: Whole, heap: Heap) -> None:
+    """Remove the entry of the least time; `size` entries are left."""
+    key, name = heap
+    one, at, end = np.uint64(1), np.uint64(0), np.uint64(size)
+    last, node = key[end], name[end]
+    while True:
+        below = (at << one) + one
+        if below >= end:
+            break
+        if below + one < end and key[below + one] < key[below]:
+            below += one
+        if last <= key[below]:
+            break
+        key[at], name[at] = key[below], name[below]
+        at = below
+    key[at], name[at] = last, node
+
+
+@njit(cache=True, nogil=True)
+def twice(heap: Heap) -> Heap:
+    """The heap with twice the room."""
+    return np.concatenate((heap[0], heap[0])), np.concatenate((heap[1], heap[1]))

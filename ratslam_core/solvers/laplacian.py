@@ -3,9 +3,7 @@
 The system is a net of springs or resistors. Eliminating a node links each two of its neighbours directly, with the
 product of their weights over the sum of all. This is Gaussian elimination, with sums of positive numbers only. The node
 with the fewest neighbours goes first, which keeps nets of chains, as maps are, nearly as sparse as they were. The rest,
-in which most nodes have many neighbours, is solved as a dense matrix.
-
-Symmetric dense systems: Cholesky's factor, block by block, and solving with it.
+in which most nodes have many neighbours, is solved as a dense matrix, by Cholesky's factor.
 """
 
 from __future__ import annotations
@@ -17,79 +15,31 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-BLOCK = 32  # columns that are eliminated together
-
-
-@njit(cache=True, nogil=True)
-def factor(matrix: NDArray[np.float64]) -> bool:
-    """The lower triangle becomes L with L L^T = matrix; False when a pivot is not positive.
-
-    A library's factor would be twice as quick, but its last digits depend on how many cores there are.
-    """
-    n = len(matrix)
-    for first in range(0, n, BLOCK):
-        end = min(first + BLOCK, n)
-        if not _factor_columns(matrix, first, end):
-            return False
-        columns = np.empty((end - first, n - end))
-        for k in range(end - first):
-            for i in range(end, n):
-                columns[k, i - end] = matrix[i, first + k]
-        for i in range(end, n):  # a block is whole where rows are left below it, so its columns come in fours
-            row, shares = matrix[i, end : i + 1], matrix[i, first:end]
-            for k in range(0, len(shares), 4):
-                s0, s1, s2, s3 = shares[k], shares[k + 1], shares[k + 2], shares[k + 3]
-                c0, c1, c2, c3 = columns[k], columns[k + 1], columns[k + 2], columns[k + 3]
-                for c in range(len(row)):
-                    row[c] = row[c] - s0 * c0[c] - s1 * c1[c] - s2 * c2[c] - s3 * c3[c]
-    return True
-
-
-@njit(cache=True, nogil=True)
-def _factor_columns(matrix: NDArray[np.float64], first: int, end: int) -> bool:
-    """Columns `first` to `end` of L, row by row, since a row lies together in memory and a column does not."""
-    roots, across = np.empty(BLOCK), np.empty((BLOCK, BLOCK))  # of the block on the diagonal; across: its transpose
-    for i in range(first, len(matrix)):
-        row = matrix[i, first : min(end, i + 1)]
-        for j in range(len(row)):
-            if first + j == i:
-                if not row[j] > 0.0:
-                    return False
-                roots[j] = math.sqrt(row[j])
-            row[j] /= roots[j]
-            share, column = row[j], across[j]
-            if i < end:
-                column[i - first] = share
-            for k in range(j + 1, len(row)):
-                row[k] -= share * column[k]
-    return True
-
-
-@njit(cache=True, nogil=True)
-def solve_rows(triangle: NDArray[np.float64], rows: NDArray[np.int64], out: NDArray[np.float64]) -> None:
-    """Solve L L^T x = b in place: each column of b is in these rows of `out`, and x takes its place.
-
-    triangle: (k, k), L; rows: (k,).
-    """
-    x = np.empty(len(rows))
-    for k in range(out.shape[1]):
-        for i in range(len(rows)):
-            x[i] = out[rows[i], k]
-        for i in range(len(rows)):
-            for j in range(i):
-                x[i] -= triangle[i, j] * x[j]
-            x[i] /= triangle[i, i]
-        for i in range(len(rows) - 1, -1, -1):
-            x[i] /= triangle[i, i]
-            for j in range(i):
-                x[j] -= triangle[i, j] * x[i]
-        for i in range(len(rows)):
-            out[rows[i], k] = x[i]
-
-
 SPARE = 2  # neighbours that a node has room for at first, in addition to its own
 DENSE = 8  # the rest is dense when each of its nodes is linked to an eighth of it or more
 DENSE_IS_QUICKER = 100  # how many times quicker a product in a dense matrix is than one of two links
+BLOCK = 32  # columns of a dense matrix that are eliminated together
+
+
+def eliminate(
+    n: int, links: NDArray[np.int64], weights: NDArray[np.float64], largest: int = 4000
+) -> Elimination | None:
+    """Eliminate the nodes. links: (m, 2) nodes from 0 to n - 1; weights: (m,), 0 or more; links that repeat add up.
+
+    None when the net is so entangled that a rest of more than `largest` nodes is left.
+    """
+    order, start, used, other, weight, total, work = _eliminate(n, links, weights, DENSE)
+    left = np.ones(n, np.bool_)
+    left[0] = left[order] = False
+    rest = np.flatnonzero(left)
+    if len(rest) > largest:
+        return None
+    triangle = _matrix(n, rest, start, used, other, weight)
+    if not factor(triangle):  # weights differ too much for differences, not for sums
+        order, start, used, other, weight, total, work = _eliminate(n, links, weights, 0)
+        rest, triangle = rest[:0], np.zeros((0, 0))
+    work += len(rest) ** 3 // DENSE_IS_QUICKER
+    return Elimination(order, start, used, other, weight, total, rest, triangle, work)
 
 
 class Elimination(NamedTuple):
@@ -113,27 +63,6 @@ class Elimination(NamedTuple):
         out = np.array(asked, np.float64).reshape(len(asked), -1)
         _solve(self.order, self.start, self.used, self.other, self.weight, self.total, self.rest, self.triangle, out)
         return out.reshape(asked.shape)
-
-
-def eliminate(
-    n: int, links: NDArray[np.int64], weights: NDArray[np.float64], largest: int = 4000
-) -> Elimination | None:
-    """Eliminate the nodes. links: (m, 2) nodes from 0 to n - 1; weights: (m,), 0 or more; links that repeat add up.
-
-    None when the net is so entangled that a rest of more than `largest` nodes is left.
-    """
-    order, start, used, other, weight, total, work = _eliminate(n, links, weights, DENSE)
-    left = np.ones(n, np.bool_)
-    left[0] = left[order] = False
-    rest = np.flatnonzero(left)
-    if len(rest) > largest:
-        return None
-    triangle = _matrix(n, rest, start, used, other, weight)
-    if not factor(triangle):  # weights differ too much for differences, not for sums
-        order, start, used, other, weight, total, work = _eliminate(n, links, weights, 0)
-        rest, triangle = rest[:0], np.zeros((0, 0))
-    work += len(rest) ** 3 // DENSE_IS_QUICKER
-    return Elimination(order, start, used, other, weight, total, rest, triangle, work)
 
 
 @njit(cache=True, nogil=True)
@@ -208,33 +137,6 @@ def _net(
 
 
 @njit(cache=True, nogil=True)
-def _meet(
-    a: int,
-    others: NDArray[np.uint32],
-    parts: NDArray[np.float64],
-    share: float,
-    own: NDArray[np.uint32],
-    own_weight: NDArray[np.float64],
-    count: int,
-    where: NDArray[np.uint32],
-) -> int:
-    """Make these others neighbours of a, too, with this share of their weights; returns how many neighbours a has now."""
-    for q in range(count):
-        where[own[q]] = q
-    for k in range(len(others)):
-        b = others[k]
-        if b == a:
-            continue
-        q = where[b]
-        if q < count and own[q] == b:
-            own_weight[q] += share * parts[k]
-        else:
-            own[count], own_weight[count] = b, share * parts[k]
-            count += 1
-    return count
-
-
-@njit(cache=True, nogil=True)
 def _join(
     i: int,
     j: int,
@@ -268,6 +170,33 @@ def _leave(
         q += 1
     other[q], weight[q] = other[last], weight[last]
     used[i] = used[i] - 1
+
+
+@njit(cache=True, nogil=True)
+def _meet(
+    a: int,
+    others: NDArray[np.uint32],
+    parts: NDArray[np.float64],
+    share: float,
+    own: NDArray[np.uint32],
+    own_weight: NDArray[np.float64],
+    count: int,
+    where: NDArray[np.uint32],
+) -> int:
+    """Make these others neighbours of a, too, with this share of their weights; returns how many neighbours a has now."""
+    for q in range(count):
+        where[own[q]] = q
+    for k in range(len(others)):
+        b = others[k]
+        if b == a:
+            continue
+        q = where[b]
+        if q < count and own[q] == b:
+            own_weight[q] += share * parts[k]
+        else:
+            own[count], own_weight[count] = b, share * parts[k]
+            count += 1
+    return count
 
 
 @njit(cache=True, nogil=True)
@@ -311,6 +240,51 @@ def _matrix(
 
 
 @njit(cache=True, nogil=True)
+def factor(matrix: NDArray[np.float64]) -> bool:
+    """Cholesky's factor, block by block: the lower triangle becomes L with L L^T = matrix; False when a pivot is not positive.
+
+    A library's factor would be twice as quick, but its last digits depend on how many cores there are.
+    """
+    n = len(matrix)
+    for first in range(0, n, BLOCK):
+        end = min(first + BLOCK, n)
+        if not _factor_columns(matrix, first, end):
+            return False
+        columns = np.empty((end - first, n - end))
+        for k in range(end - first):
+            for i in range(end, n):
+                columns[k, i - end] = matrix[i, first + k]
+        for i in range(end, n):  # a block is whole where rows are left below it, so its columns come in fours
+            row, shares = matrix[i, end : i + 1], matrix[i, first:end]
+            for k in range(0, len(shares), 4):
+                s0, s1, s2, s3 = shares[k], shares[k + 1], shares[k + 2], shares[k + 3]
+                c0, c1, c2, c3 = columns[k], columns[k + 1], columns[k + 2], columns[k + 3]
+                for c in range(len(row)):
+                    row[c] = row[c] - s0 * c0[c] - s1 * c1[c] - s2 * c2[c] - s3 * c3[c]
+    return True
+
+
+@njit(cache=True, nogil=True)
+def _factor_columns(matrix: NDArray[np.float64], first: int, end: int) -> bool:
+    """Columns `first` to `end` of L, row by row, since a row lies together in memory and a column does not."""
+    roots, across = np.empty(BLOCK), np.empty((BLOCK, BLOCK))  # of the block on the diagonal; across: its transpose
+    for i in range(first, len(matrix)):
+        row = matrix[i, first : min(end, i + 1)]
+        for j in range(len(row)):
+            if first + j == i:
+                if not row[j] > 0.0:
+                    return False
+                roots[j] = math.sqrt(row[j])
+            row[j] /= roots[j]
+            share, column = row[j], across[j]
+            if i < end:
+                column[i - first] = share
+            for k in range(j + 1, len(row)):
+                row[k] -= share * column[k]
+    return True
+
+
+@njit(cache=True, nogil=True)
 def _solve(
     order: NDArray[np.int64],
     start: NDArray[np.int64],
@@ -328,10 +302,32 @@ def _solve(
             for k in range(out.shape[1]):
                 out[other[q], k] += share * out[v, k]
     out[0] = 0.0
-    solve_rows(triangle, rest, out)
+    _solve_rows(triangle, rest, out)
     for v in order[::-1]:
         for k in range(out.shape[1]):
             moved = out[v, k] if total[v] > 0.0 else 0.0
             for q in range(start[v], start[v] + used[v]):
                 moved += weight[q] * out[other[q], k]
             out[v, k] = moved / total[v] if total[v] > 0.0 else 0.0
+
+
+@njit(cache=True, nogil=True)
+def _solve_rows(triangle: NDArray[np.float64], rows: NDArray[np.int64], out: NDArray[np.float64]) -> None:
+    """Solve L L^T x = b in place: each column of b is in these rows of `out`, and x takes its place.
+
+    triangle: (k, k), L; rows: (k,).
+    """
+    x = np.empty(len(rows))
+    for k in range(out.shape[1]):
+        for i in range(len(rows)):
+            x[i] = out[rows[i], k]
+        for i in range(len(rows)):
+            for j in range(i):
+                x[i] -= triangle[i, j] * x[j]
+            x[i] /= triangle[i, i]
+        for i in range(len(rows) - 1, -1, -1):
+            x[i] /= triangle[i, i]
+            for j in range(i):
+                x[j] -= triangle[i, j] * x[i]
+        for i in range(len(rows)):
+            out[rows[i], k] = x[i]

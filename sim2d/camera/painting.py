@@ -1,7 +1,4 @@
-"""Turns the walls that each column meets into an image: with textures, shading by distance and direction, and noise.
-
-Reflections in glass: a column's ray is reflected at the pane and followed to the first thing it meets.
-"""
+"""Turns the walls that each column meets into an image: textures, shading by distance and direction, reflections, noise."""
 
 from __future__ import annotations
 
@@ -16,7 +13,22 @@ from sim2d.camera.atlas import LEVELS, MIDDLE
 from sim2d.camera.sight import MAX_HITS
 from sim2d.geometry.wall_index import WallIndex, crossing, first_wall
 
-_OFF_M = 1e-6
+_OFF_M = 1e-6  # so far from a pane begins the ray that it reflects
+_MAX_ROWS = 1024
+ONE, TWO, THREE = np.uint64(1), np.uint64(2), np.uint64(3)  # an unsigned index needs no check for negative values
+
+
+class Strips(NamedTuple):
+    """The looks of a camera's walls: the arrays of `Atlas`, bottom and top of each wall (m), the shade of each side."""
+
+    texels: NDArray[np.float32]
+    first: NDArray[np.int64]
+    columns: NDArray[np.int64]
+    rows: NDArray[np.int64]
+    bottoms: NDArray[np.float64]
+    tops: NDArray[np.float64]
+    shades: NDArray[np.float64]
+    reflection: NDArray[np.float64]  # -1 where it is no glass
 
 
 @njit(cache=True, nogil=True)
@@ -36,10 +48,11 @@ def mirrored(
     strips: NDArray[np.int64],
     found: NDArray[np.float64],
 ) -> None:
-    """For each column: which of its hits is its nearest pane (`at`, -1: none), and what is seen in it.
+    """Reflections in glass: for each column, which of its hits is its nearest pane (`at`, -1: none), and what is seen in it.
 
-    elements: numbers of the actors' sides that are present. strips: (w,) the strip that the reflected ray meets, -1:
-    none. found: (w, 3) as one row of hits; its inverse distance is that of the whole way.
+    A column's ray is reflected at the pane and followed to the first thing it meets. elements: numbers of the actors' sides
+    that are present. strips: (w,) the strip that the reflected ray meets, -1: none. found: (w, 3) as one row of hits; its
+    inverse distance is that of the whole way.
     """
     cos, sin = math.cos(heading), math.sin(heading)
     for c in range(counts.size):
@@ -68,23 +81,6 @@ def mirrored(
             break
 
 
-_MAX_ROWS = 1024
-ONE, TWO, THREE = np.uint64(1), np.uint64(2), np.uint64(3)  # an unsigned index needs no check for negative values
-
-
-class Strips(NamedTuple):
-    """The looks of a camera's walls: the arrays of `Atlas`, bottom and top of each wall (m), the shade of each side."""
-
-    texels: NDArray[np.float32]
-    first: NDArray[np.int64]
-    columns: NDArray[np.int64]
-    rows: NDArray[np.int64]
-    bottoms: NDArray[np.float64]
-    tops: NDArray[np.float64]
-    shades: NDArray[np.float64]
-    reflection: NDArray[np.float64]  # -1 where it is no glass
-
-
 @njit(cache=True, nogil=True)
 def paint_columns(
     strips: Strips,
@@ -105,7 +101,7 @@ def paint_columns(
 
     A column holds red, green and blue of each pixel, from the top down. fade: depth (m) at which brightness has fallen to
     a half. glow: (w, k + 1) brightness of each hit, then of floor and ceiling. panes, mirror_strips, mirror_hits: from
-    `mirror.mirrored`.
+    `mirrored`.
     """
     texels, first, columns, rows = strips.texels, strips.first, strips.columns, strips.rows
     bottoms, tops, shades, reflection = strips.bottoms, strips.tops, strips.shades, strips.reflection
@@ -178,6 +174,34 @@ def _hide(
 
 
 @njit(cache=True, nogil=True)
+def _mean_along(
+    texels: NDArray[np.float32],
+    start: int,
+    stride: int,
+    n_columns: int,
+    u0: float,
+    u1: float,
+    count: int,
+    shade: float,
+    stretch: NDArray[np.float32],
+) -> None:
+    """Fill `stretch` with `count` values of a strip: the mean over fractions u0 to u1 of its length."""
+    a, b = u0 * n_columns, u1 * n_columns
+    if b - a < 1.0:
+        a = min(max(0.5 * (a + b) - 0.5, 0.0), n_columns - 1.0)
+        b = a + 1.0
+    ia, ib = min(int(a), n_columns - 1), min(int(b), n_columns - 1)
+    gain, base = shade / (b - a), np.float32(MIDDLE * shade)
+    a1, b1 = np.float32(gain * (a - ia)), np.float32(gain * (b - ib))
+    a0, b0 = np.float32(gain) - a1, np.float32(gain) - b1
+    ia, ib = start + ia * stride, start + ib * stride
+    left, left_next = texels[ia : ia + count], texels[ia + stride : ia + stride + count]
+    right, right_next = texels[ib : ib + count], texels[ib + stride : ib + stride + count]
+    for j in range(count):  # over slices, so that the compiler can vectorise
+        stretch[j] = right[j] * b0 + right_next[j] * b1 - left[j] * a0 - left_next[j] * a1 + base
+
+
+@njit(cache=True, nogil=True)
 def _paint_rows(
     image: NDArray[np.float32],
     stretch: NDArray[np.float32],
@@ -230,34 +254,6 @@ def _blend(
     for channel in range(3):
         colour = stretch[j0 + channel] + f * (stretch[j1 + channel] - stretch[j0 + channel])
         pixel[channel] += cover * (colour - pixel[channel])
-
-
-@njit(cache=True, nogil=True)
-def _mean_along(
-    texels: NDArray[np.float32],
-    start: int,
-    stride: int,
-    n_columns: int,
-    u0: float,
-    u1: float,
-    count: int,
-    shade: float,
-    stretch: NDArray[np.float32],
-) -> None:
-    """Fill `stretch` with `count` values of a strip: the mean over fractions u0 to u1 of its length."""
-    a, b = u0 * n_columns, u1 * n_columns
-    if b - a < 1.0:
-        a = min(max(0.5 * (a + b) - 0.5, 0.0), n_columns - 1.0)
-        b = a + 1.0
-    ia, ib = min(int(a), n_columns - 1), min(int(b), n_columns - 1)
-    gain, base = shade / (b - a), np.float32(MIDDLE * shade)
-    a1, b1 = np.float32(gain * (a - ia)), np.float32(gain * (b - ib))
-    a0, b0 = np.float32(gain) - a1, np.float32(gain) - b1
-    ia, ib = start + ia * stride, start + ib * stride
-    left, left_next = texels[ia : ia + count], texels[ia + stride : ia + stride + count]
-    right, right_next = texels[ib : ib + count], texels[ib + stride : ib + stride + count]
-    for j in range(count):  # over slices, so that the compiler can vectorise
-        stretch[j] = right[j] * b0 + right_next[j] * b1 - left[j] * a0 - left_next[j] * a1 + base
 
 
 @njit(cache=True, nogil=True)

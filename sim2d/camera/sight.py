@@ -1,11 +1,9 @@
-"""The camera's rays: which walls may be visible at all, and which of them a round lens sees.
+"""The camera's rays: which walls may be visible at all, and which of them each column of the image meets.
 
-Which walls each column of the camera's image meets.
-
-The inverse depth of a wall, and the position along it divided by depth, are linear across the image. So each wall is
-transformed into camera coordinates once, and every column finds its hits by interpolation: 2.5-D, with no ray per
-pixel. Low walls (desks, partitions) do not hide high ones, so a column keeps its nearest hits up to the first wall of
-full height.
+The inverse depth of a wall, and the position along it divided by depth, are linear across the image of a flat lens. So
+each wall is transformed into camera coordinates once, and every column finds its hits by interpolation: 2.5-D, with no
+ray per pixel. Low walls (desks, partitions) do not hide high ones, so a column keeps its nearest hits up to the first
+wall of full height. A round lens casts a ray per column.
 """
 
 from __future__ import annotations
@@ -21,6 +19,76 @@ from sim2d.geometry.wall_index import FAR, WallIndex, crossing, enter
 MAX_HITS = 8
 NEAR_M = 0.02  # anything nearer than this is not seen
 SAME = 1e-6  # of two walls in one place, nearer to each other than this share of the distance, the first is seen
+MOST_FLAT_RAD = 2.4  # widest view of a flat lens: a wider one would stretch the edges of the image too much
+_WITHIN = 1e-9  # only a wall that is met at least this far from its ends is sure to hide what is behind
+
+
+def lens_rays(width: int, fov_rad: float) -> tuple[NDArray[np.float64], float]:
+    """(w + 1, 2, 2): for each column the rays of its middle and left edge, (ahead, left); and the focal length, pixels.
+
+    Up to MOST_FLAT_RAD the lens is flat: all rays have 1 as their component ahead, so that multiples of a ray count
+    depth. A wider lens is round: all rays have length 1, so that multiples count distance.
+    """
+    column = np.arange(width + 1)[:, None] + np.array([0.5, 0.0])
+    if fov_rad <= MOST_FLAT_RAD:
+        focal = 0.5 * width / math.tan(0.5 * fov_rad)
+        left = np.asarray((0.5 * width - column) / focal, np.float64)
+        return np.stack([np.ones_like(left), left], axis=2), focal
+    focal = width / fov_rad
+    angle = (0.5 * width - column) / focal
+    return np.stack([np.cos(angle), np.sin(angle)], axis=2), focal
+
+
+@njit(cache=True, nogil=True)
+def seen_walls(
+    index: WallIndex,
+    full: NDArray[np.bool_],
+    x: float,
+    y: float,
+    heading: float,
+    rays: NDArray[np.float64],
+    marks: NDArray[np.int64],
+    mark: int,
+    seen: NDArray[np.int64],
+) -> int:
+    """All walls in the cells that the columns' middle rays pass on their way to the first full wall, in ascending order.
+
+    marks: (n,) scratch, none of it equal to `mark`. seen: (>= n,) is filled with the walls' numbers. Returns how many.
+    """
+    n = 0
+    cos, sin = math.cos(heading), math.sin(heading)
+    for column_of_image in range(rays.shape[0] - 1):
+        ahead, left = rays[column_of_image, 0, 0], rays[column_of_image, 0, 1]
+        ux, uy = ahead * cos - left * sin, ahead * sin + left * cos
+        inside, column, row, next_x, next_y = enter(index, x, y, ux, uy)
+        if not inside:
+            continue
+        step_x, step_y = (1 if ux > 0.0 else -1), (1 if uy > 0.0 else -1)
+        per_x = index.cell / abs(ux) if ux != 0.0 else FAR
+        per_y = index.cell / abs(uy) if uy != 0.0 else FAR
+        stop = FAR
+        while 0 <= column < index.n_x and 0 <= row < index.n_y:
+            c = row * index.n_x + column
+            for k in range(index.first[c], index.first[c + 1]):
+                i = index.items[k]
+                if marks[i] != mark:
+                    marks[i] = mark
+                    seen[n] = i
+                    n += 1
+                if full[i]:
+                    t, s = crossing(index.segments, i, x, y, ux, uy)
+                    if t > NEAR_M and _WITHIN < s < 1.0 - _WITHIN:
+                        stop = min(stop, t)
+            if stop <= min(next_x, next_y):
+                break
+            if next_x < next_y:
+                column += step_x
+                next_x += per_x
+            else:
+                row += step_y
+                next_y += per_y
+    seen[:n].sort()
+    return n
 
 
 @njit(cache=True, nogil=True)
@@ -87,80 +155,6 @@ def column_hits(
             walls[c, k] = 2 * i + side
             hits[c, k, 0], hits[c, k, 1], hits[c, k, 2] = inverse, min(u0, u1), max(u0, u1)
             counts[c] = k + 1 if full[i] else min(n + 1, MAX_HITS)
-
-
-MOST_FLAT_RAD = 2.4  # widest view of a flat lens: a wider one would stretch the edges of the image too much
-_WITHIN = 1e-9  # only a wall that is met at least this far from its ends is sure to hide what is behind
-
-
-def lens_rays(width: int, fov_rad: float) -> tuple[NDArray[np.float64], float]:
-    """(w + 1, 2, 2): for each column the rays of its middle and left edge, (ahead, left); and the focal length in
-    pixels.
-
-    Up to MOST_FLAT_RAD the lens is flat: all rays have 1 as their component ahead, so that multiples of a ray count
-    depth. A wider lens is round: all rays have length 1, so that multiples count distance.
-    """
-    column = np.arange(width + 1)[:, None] + np.array([0.5, 0.0])
-    if fov_rad <= MOST_FLAT_RAD:
-        focal = 0.5 * width / math.tan(0.5 * fov_rad)
-        left = np.asarray((0.5 * width - column) / focal, np.float64)
-        return np.stack([np.ones_like(left), left], axis=2), focal
-    focal = width / fov_rad
-    angle = (0.5 * width - column) / focal
-    return np.stack([np.cos(angle), np.sin(angle)], axis=2), focal
-
-
-@njit(cache=True, nogil=True)
-def seen_walls(
-    index: WallIndex,
-    full: NDArray[np.bool_],
-    x: float,
-    y: float,
-    heading: float,
-    rays: NDArray[np.float64],
-    marks: NDArray[np.int64],
-    mark: int,
-    seen: NDArray[np.int64],
-) -> int:
-    """All walls in the cells that the columns' middle rays pass on their way to the first full wall, in ascending
-    order.
-
-    marks: (n,) scratch, none of it equal to `mark`. seen: (>= n,) is filled with the walls' numbers. Returns how many.
-    """
-    n = 0
-    cos, sin = math.cos(heading), math.sin(heading)
-    for column_of_image in range(rays.shape[0] - 1):
-        ahead, left = rays[column_of_image, 0, 0], rays[column_of_image, 0, 1]
-        ux, uy = ahead * cos - left * sin, ahead * sin + left * cos
-        inside, column, row, next_x, next_y = enter(index, x, y, ux, uy)
-        if not inside:
-            continue
-        step_x, step_y = (1 if ux > 0.0 else -1), (1 if uy > 0.0 else -1)
-        per_x = index.cell / abs(ux) if ux != 0.0 else FAR
-        per_y = index.cell / abs(uy) if uy != 0.0 else FAR
-        stop = FAR
-        while 0 <= column < index.n_x and 0 <= row < index.n_y:
-            c = row * index.n_x + column
-            for k in range(index.first[c], index.first[c + 1]):
-                i = index.items[k]
-                if marks[i] != mark:
-                    marks[i] = mark
-                    seen[n] = i
-                    n += 1
-                if full[i]:
-                    t, s = crossing(index.segments, i, x, y, ux, uy)
-                    if t > NEAR_M and _WITHIN < s < 1.0 - _WITHIN:
-                        stop = min(stop, t)
-            if stop <= min(next_x, next_y):
-                break
-            if next_x < next_y:
-                column += step_x
-                next_x += per_x
-            else:
-                row += step_y
-                next_y += per_y
-    seen[:n].sort()
-    return n
 
 
 @njit(cache=True, nogil=True)

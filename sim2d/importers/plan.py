@@ -1,7 +1,4 @@
-"""The last step of every importer: walls and starts become a checked World.
-
-An empty room with a lamp and a start, as a beginning for drawing one's own office.
-"""
+"""Worlds from walls: the last step of every importer, and an empty room as a beginning for drawing one's own office."""
 
 from __future__ import annotations
 
@@ -20,11 +17,13 @@ from sim2d.world.world import Start, Wall, World
 from sim2d.world.world_check import Fault, check_world
 from sim2d.world.world_file import WorldError
 
+SMALLEST_M, LARGEST_M = 2.0, 200.0  # sides of an empty room
+
 
 def plan_world(name: str, walls: tuple[Wall, ...], starts: NDArray[np.float64], what: str, radius_m: float) -> World:
-    """A checked World. name: of the file; what: its kind, in words; starts: (k, 3) x, y (m), heading (rad).
+    """Walls and starts become a checked World. starts: (k, 3) x, y (m), heading (rad).
 
-    Raises WorldError if the walls do not make a valid world.
+    name: of the file; what: its kind, in words. Raises WorldError if the walls do not make a valid world.
     """
     stem = re.sub(r"[^A-Za-z0-9_-]+", "-", PurePath(name).name.split(".")[0]).strip("-")[:40] or "plan"
     xy = np.array([(w.x1, w.y1) for w in walls])
@@ -53,9 +52,6 @@ def plan_world(name: str, walls: tuple[Wall, ...], starts: NDArray[np.float64], 
         where = "".join(f"[{k}]" if isinstance(k, int) else f".{k}" for k in fault.where).lstrip(".")
         raise WorldError(f"{name}: the walls traced from it make no world: {where}: {fault.message}") from None
     return world
-
-
-SMALLEST_M, LARGEST_M = 2.0, 200.0
 
 
 def empty_room(name: str, title: str, width: float, depth: float) -> World:

@@ -1,6 +1,6 @@
-"""From a picture to walls: the borders of the floor are traced along the pixels, then simplified within a tolerance.
+"""From a picture to walls: which part of it is the floor, where a robot may start on it, and the borders of the floor.
 
-Which part of a plan is the floor, and where on it a robot may start.
+The borders are traced along the pixels, then simplified within a tolerance.
 """
 
 from __future__ import annotations
@@ -18,14 +18,8 @@ from sim2d.world.world_file import WorldError
 STARTS = 4
 _AMPLE_M = 0.6  # distance from a start to the nearest wall, where there is room for it
 _TURNS = 16  # headings tried for a start
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Floor:
-    """mask: the pixels of the chosen floor, row 0 at the bottom. starts: (k, 3) column, row, heading (rad), in pixels."""
-
-    mask: NDArray[np.bool_]
-    starts: NDArray[np.float64]
+_DX = np.array([1, 0, -1, 0])
+_DY = np.array([0, 1, 0, -1])
 
 
 def choose_floor(name: str, free: NDArray[np.bool_], scale_m: float, radius_m: float) -> Floor:
@@ -56,6 +50,14 @@ def choose_floor(name: str, free: NDArray[np.bool_], scale_m: float, radius_m: f
     return Floor(parts == part, _starts(free, rooms == room, clear_m, scale_m))
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Floor:
+    """mask: the pixels of the chosen floor, row 0 at the bottom. starts: (k, 3) column, row, heading (rad), in pixels."""
+
+    mask: NDArray[np.bool_]
+    starts: NDArray[np.float64]
+
+
 def _components(cells: NDArray[np.bool_], connectivity: int) -> tuple[int, NDArray[np.int32]]:
     """The number of connected parts, counting part 0 (cells in none), and the part of each cell."""
     count, parts = cv2.connectedComponents(cells.astype(np.uint8), connectivity=connectivity)
@@ -78,7 +80,7 @@ def _starts(
 
 
 def _longest(free: NDArray[np.bool_], column: int, row: int) -> float:
-    """Of sixteen headings (rad), the one with the longest free way."""
+    """Of so many headings (rad), the one with the longest free way."""
     best, best_way = 0.0, -1
     for k in range(_TURNS):
         angle = 2 * math.pi * k / _TURNS
@@ -93,13 +95,8 @@ def _longest(free: NDArray[np.bool_], column: int, row: int) -> float:
     return best
 
 
-_DX = np.array([1, 0, -1, 0])
-_DY = np.array([0, 1, 0, -1])
-
-
 def trace(floor: NDArray[np.bool_]) -> list[NDArray[np.int32]]:
-    """The borders of the floor as closed rings of corners (k, 2), in pixels; row 0 is at the bottom, pixel (0, 0) spans
-    0 to 1.
+    """The borders of the floor as closed rings of corners (k, 2), pixels; row 0 is at the bottom, pixel (0, 0) spans 0 to 1.
 
     The rings run along the edges of pixels with the floor on their left: counter-clockwise around the floor, clockwise
     around obstacles. Obstacles that touch at a corner are connected, so a slanting line of single pixels is a closed
@@ -109,23 +106,6 @@ def trace(floor: NDArray[np.bool_]) -> list[NDArray[np.int32]]:
     padded[1:-1, 1:-1] = floor
     flat, ends = _follow(padded)
     return [flat[begin:end] for begin, end in zip([0, *ends[:-1]], ends, strict=True)] if len(ends) else []
-
-
-def simplify(ring: NDArray[np.int32], into_floor: float = 1.0, into_wall: float = 1.5) -> NDArray[np.int32]:
-    """The ring with the fewest corners, taken from the given ones, that keeps within the tolerances.
-
-    into_floor, into_wall: how far (pixels) it may stray to either side of the border. Imai and Iri 1988: the shortest
-    path over all chords within the tolerances, begun at the lowest corner. A thin obstacle may end up as two corners.
-    """
-    start = int(np.lexsort((ring[:, 0], ring[:, 1]))[0])
-    closed = np.concatenate([ring[start:], ring[: start + 1]]).astype(np.float64)
-    return closed[_fewest(closed, into_floor, into_wall)].astype(np.int32)
-
-
-def ring_area(ring: NDArray[np.generic]) -> float:
-    """The area that a ring encloses; positive if it runs counter-clockwise."""
-    x, y = ring[:, 0].astype(np.float64), ring[:, 1].astype(np.float64)
-    return 0.5 * float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))
 
 
 @njit(cache=True, nogil=True)
@@ -186,6 +166,17 @@ def _ahead(floor: NDArray[np.bool_], x: int, y: int, d: int, left: int) -> bool:
     return floor[y - 1, x - 1 + left]
 
 
+def simplify(ring: NDArray[np.int32], into_floor: float = 1.0, into_wall: float = 1.5) -> NDArray[np.int32]:
+    """The ring with the fewest corners, taken from the given ones, that keeps within the tolerances.
+
+    into_floor, into_wall: how far (pixels) it may stray to either side of the border. Imai and Iri 1988: the shortest
+    path over all chords within the tolerances, begun at the lowest corner. A thin obstacle may end up as two corners.
+    """
+    start = int(np.lexsort((ring[:, 0], ring[:, 1]))[0])
+    closed = np.concatenate([ring[start:], ring[: start + 1]]).astype(np.float64)
+    return closed[_fewest(closed, into_floor, into_wall)].astype(np.int32)
+
+
 @njit(cache=True, nogil=True)
 def _fewest(points: NDArray[np.float64], into_floor: float, into_wall: float) -> NDArray[np.int64]:
     """Numbers of the points on the shortest path from the first point to the last, without the last.
@@ -232,3 +223,9 @@ def _fewest(points: NDArray[np.float64], into_floor: float, into_wall: float) ->
 @njit(cache=True, nogil=True)
 def _wrap(angle: float) -> float:
     return angle - 2.0 * math.pi * math.floor((angle + math.pi) / (2.0 * math.pi))
+
+
+def ring_area(ring: NDArray[np.generic]) -> float:
+    """The area that a ring encloses; positive if it runs counter-clockwise."""
+    x, y = ring[:, 0].astype(np.float64), ring[:, 1].astype(np.float64)
+    return 0.5 * float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))

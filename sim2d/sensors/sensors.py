@@ -1,9 +1,4 @@
-"""All sensors of the robot: camera, sonars, bumper, laser, wheels. Each has a generator of its own for its errors.
-
-What wheel encoders and gyro report: the true motion of a tick, with realistic errors.
-
-Scene numbers from the true pose, as in the papers' own simulator. ACRA 2005 section 5, ACRA 2006 section 5.1.
-"""
+"""All sensors of the robot: camera, sonars, bumper, laser, wheels. Each has a generator of its own for its errors."""
 
 from __future__ import annotations
 
@@ -22,72 +17,9 @@ from sim2d.params import SimParams
 from sim2d.sensors.ranges import SONAR_ANGLES_RAD, is_clear, laser_ranges, sonar_ranges
 from sim2d.world.world import World
 
-_NOISE_S = 0.1  # `odometry_noise` is that of a movement of so long
-
-
-def wrap_angle(angle: float) -> float:
-    """The same direction in (-pi, pi]."""
-    wrapped = math.remainder(angle, 2 * math.pi)
-    return math.pi if wrapped == -math.pi else wrapped
-
-
-def true_motion(
-    before: tuple[float, float, float], after: tuple[float, float, float], dt: float
-) -> tuple[float, float]:
-    """Mean forward speed (m/s) and yaw rate (rad/s) between two poses (x, y, heading) that are `dt` seconds apart.
-
-    The speed is that along the arc: the chord along the middle heading, divided by the sinc of half the turn.
-    """
-    turn = wrap_angle(after[2] - before[2])
-    middle = before[2] + 0.5 * turn
-    chord = (after[0] - before[0]) * math.cos(middle) + (after[1] - before[1]) * math.sin(middle)
-    half = 0.5 * turn
-    arc = chord * half / math.sin(half) if abs(half) > 1e-9 else chord
-    return arc / dt, turn / dt
-
-
-def report(speed: float, yaw_rate: float, params: SimParams, rng: np.random.Generator) -> tuple[float, float]:
-    """Reported speed (m/s) and yaw rate (rad/s). Makes two draws from `rng`, whether the robot moves or not.
-
-    A robot at rest gives no counts and reports exactly (0, 0). The bias of the yaw rate acts only while the wheels
-    turn, since a robot at rest could calibrate it away. The scale error comes from the wheels and affects only the
-    speed.
-
-    [ours] The noise of a short tick is larger, so that noise adds up to the same variance in a second at every rate.
-    test_odometer.py::test_noise_adds_up_alike_at_every_rate.
-    """
-    speed_error, yaw_error = rng.standard_normal(2).tolist()
-    noise = params.odometry_noise * math.sqrt(_NOISE_S / params.tick_s)
-    if abs(speed) < params.still_speed and abs(yaw_rate) < params.still_yaw_rate:
-        return 0.0, 0.0
-    return (
-        speed * (1.0 + params.odometry_scale_error) * (1.0 + noise * speed_error),
-        yaw_rate * (1.0 + noise * yaw_error) + params.gyro_bias,
-    )
-
-
-@njit(cache=True, nogil=True)
-def scene_number(
-    x: float, y: float, heading_rad: float, bounds: tuple[float, float, float, float], cell_m: float, angle_rad: float
-) -> int:
-    """A number from 0: equal for two poses in the same square of the floor and the same sector of heading, else
-    different.
-
-    x, y (m) inside `bounds` (least x, least y, most x, most y). A sector is `angle_rad` wide, or a little less so that
-    a whole number of them fits into a turn.
-    """
-    x_from, y_from, x_to, y_to = bounds
-    columns, rows = max(1, math.ceil((x_to - x_from) / cell_m)), max(1, math.ceil((y_to - y_from) / cell_m))
-    sectors = math.ceil(2 * math.pi / angle_rad - 1e-9)
-    column = min(max(int((x - x_from) // cell_m), 0), columns - 1)
-    row = min(max(int((y - y_from) // cell_m), 0), rows - 1)
-    sector = int(heading_rad % (2 * math.pi) / (2 * math.pi) * sectors) % sectors
-    return (sector * rows + row) * columns + column
-
-
+Pose = tuple[float, float, float]  # x, y (m), heading (rad)
 _OWNERS = ("image", "sonar", "odometry", "pose", "noise bank", "actors", "echo", "laser")
-
-Pose = tuple[float, float, float]
+_NOISE_S = 0.1  # `odometry_noise` is that of a movement of so long
 
 
 @kind("sensor frame/1")
@@ -111,11 +43,6 @@ class SensorFrame:
         for array in (self.image, self.ranges_m, self.laser_m):
             array.setflags(write=False)
         return self
-
-
-def seeds(seed: int) -> dict[str, np.random.SeedSequence]:
-    """A seed for each owner of random numbers in a simulator, so that none draws from another's stream."""
-    return dict(zip(_OWNERS, np.random.SeedSequence(seed).spawn(len(_OWNERS)), strict=True))
 
 
 @kind("sensors/1")
@@ -215,3 +142,65 @@ class Sensors:
             nowhere = radius + chance[1] * (params.sonar_range_m - radius)
             ranges = np.where(false, nowhere, ranges).astype(np.float32)
         return ranges, bumped
+
+
+def seeds(seed: int) -> dict[str, np.random.SeedSequence]:
+    """A seed for each owner of random numbers in a simulator, so that none draws from another's stream."""
+    return dict(zip(_OWNERS, np.random.SeedSequence(seed).spawn(len(_OWNERS)), strict=True))
+
+
+def report(speed: float, yaw_rate: float, params: SimParams, rng: np.random.Generator) -> tuple[float, float]:
+    """What wheel encoders and gyro report of a true motion: speed (m/s) and yaw rate (rad/s), with realistic errors.
+
+    Makes two draws from `rng`, whether the robot moves or not. A robot at rest gives no counts and reports exactly (0, 0).
+    The bias of the yaw rate acts only while the wheels turn, since a robot at rest could calibrate it away. The scale
+    error comes from the wheels and affects only the speed.
+
+    [ours] The noise of a short tick is larger, so that noise adds up to the same variance in a second at every rate.
+    test_odometer.py::test_noise_adds_up_alike_at_every_rate.
+    """
+    speed_error, yaw_error = rng.standard_normal(2).tolist()
+    noise = params.odometry_noise * math.sqrt(_NOISE_S / params.tick_s)
+    if abs(speed) < params.still_speed and abs(yaw_rate) < params.still_yaw_rate:
+        return 0.0, 0.0
+    return (
+        speed * (1.0 + params.odometry_scale_error) * (1.0 + noise * speed_error),
+        yaw_rate * (1.0 + noise * yaw_error) + params.gyro_bias,
+    )
+
+
+def true_motion(before: Pose, after: Pose, dt: float) -> tuple[float, float]:
+    """Mean forward speed (m/s) and yaw rate (rad/s) between two poses that are `dt` seconds apart.
+
+    The speed is that along the arc: the chord along the middle heading, divided by the sinc of half the turn.
+    """
+    turn = wrap_angle(after[2] - before[2])
+    middle = before[2] + 0.5 * turn
+    chord = (after[0] - before[0]) * math.cos(middle) + (after[1] - before[1]) * math.sin(middle)
+    half = 0.5 * turn
+    arc = chord * half / math.sin(half) if abs(half) > 1e-9 else chord
+    return arc / dt, turn / dt
+
+
+def wrap_angle(angle: float) -> float:
+    """The same direction in (-pi, pi]."""
+    wrapped = math.remainder(angle, 2 * math.pi)
+    return math.pi if wrapped == -math.pi else wrapped
+
+
+@njit(cache=True, nogil=True)
+def scene_number(
+    x: float, y: float, heading_rad: float, bounds: tuple[float, float, float, float], cell_m: float, angle_rad: float
+) -> int:
+    """A number from 0: equal for two poses in the same square of the floor and the same sector of heading, else different.
+
+    As in the papers' own simulator: ACRA 2005 section 5, ACRA 2006 section 5.1. x, y (m) inside `bounds` (least x, least y,
+    most x, most y). A sector is `angle_rad` wide, or a little less so that a whole number of them fits into a turn.
+    """
+    x_from, y_from, x_to, y_to = bounds
+    columns, rows = max(1, math.ceil((x_to - x_from) / cell_m)), max(1, math.ceil((y_to - y_from) / cell_m))
+    sectors = math.ceil(2 * math.pi / angle_rad - 1e-9)
+    column = min(max(int((x - x_from) // cell_m), 0), columns - 1)
+    row = min(max(int((y - y_from) // cell_m), 0), rows - 1)
+    sector = int(heading_rad % (2 * math.pi) / (2 * math.pi) * sectors) % sectors
+    return (sector * rows + row) * columns + column

@@ -3,6 +3,9 @@
 The one authority on where the robot fits: for kidnaps, starts, edits and the ring under a dragged robot.
 """
 
+# SciPy has no type annotations.
+# pyright: reportMissingTypeStubs=false, reportUnknownVariableType=false, reportUnknownArgumentType=false
+
 from __future__ import annotations
 
 import math
@@ -21,12 +24,9 @@ from sim2d.geometry.segments import differing, free_cells, inside_ring, nearest_
 from sim2d.world.elements import Box, Door
 from sim2d.world.world import World
 
-# pyright: reportMissingTypeStubs=false, reportUnknownVariableType=false, reportUnknownArgumentType=false
-# SciPy has no type annotations.
-
-
 CELL_M = 0.05
 MOST_CELLS = 4_000_000  # a larger floor is given larger cells
+LEANS_M = 0.01  # how far the robot may overlap with something that it leans on
 _MOST_CHANGES = 64  # if more walls differ, the whole floor is measured anew
 # Eight neighbours and eight knight's moves; of each pair of opposite moves one is listed.
 _MOVES = ((1, 0), (0, 1), (1, 1), (1, -1), (2, 1), (1, 2), (2, -1), (1, -2))
@@ -71,10 +71,8 @@ class FreeSpace:
             low, high = self._around(self._ys, y1, y2)
             xs, ys, far = self._xs[left:right], self._ys[low:high], self.radius + self._cell
             a, b = self._segments[:, :2], self._segments[:, 2:]
-            ahead, behind = (
-                np.maximum(a, b) >= (xs[0] - far, ys[0] - far),
-                np.minimum(a, b) <= (xs[-1] + far, ys[-1] + far),
-            )
+            ahead = np.maximum(a, b) >= (xs[0] - far, ys[0] - far)
+            behind = np.minimum(a, b) <= (xs[-1] + far, ys[-1] + far)
             near = self._segments[(ahead & behind).all(axis=1)]
             free[low:high, left:right] = free_cells(near, self._ring, xs, ys, self.radius)
         return free
@@ -86,12 +84,8 @@ class FreeSpace:
 
     def holds(self, world: World, radius: float) -> bool:
         """Whether this free space is also that of another world and radius."""
-        mine = self.world
-        return radius == self.radius and (world.name, world.starts, world.walls) == (
-            mine.name,
-            mine.starts,
-            mine.walls,
-        )
+        mine, its = ((each.name, each.starts, each.walls) for each in (self.world, world))
+        return radius == self.radius and mine == its
 
     def is_free(self, x: float, y: float) -> bool:
         """Whether the robot can stand there and could have driven there."""
@@ -150,9 +144,7 @@ class FreeSpace:
         cells = np.stack([rows[inside], columns[inside]], axis=1)
         if not len(cells):
             return 0
-        cells = cells[
-            np.append(True, np.any(cells[1:] != cells[:-1], axis=1))
-        ]  # the path stays in a cell for some time
+        cells = cells[np.append(True, np.any(cells[1:] != cells[:-1], axis=1))]  # it stays in a cell for a while
         pieces = (cells[k : k + _PIECE] for k in range(0, len(cells), _PIECE))
         return sum(int(spread(self._reachable, covered, piece, metres / self._cell, _BOTH_WAYS)) for piece in pieces)
 
@@ -230,9 +222,6 @@ def _shifted(nodes: NDArray[np.int32], dx: int, dy: int) -> tuple[NDArray[np.int
     n_y, n_x = nodes.shape
     low, high = max(0, -dy), min(n_y, n_y - dy)
     return nodes[low:high, : n_x - dx], nodes[low + dy : high + dy, dx:]
-
-
-LEANS_M = 0.01  # how far the robot may overlap with something that it leans on
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,7 +1,4 @@
-"""A brain as a file that a person can keep: what `--save-brain` writes and `--brain` reads.
-
-The brain as a download: made once, in one thread, for all who ask meanwhile. One is in memory at a time.
-"""
+"""A brain as a file that a person can keep: what `--save-brain` writes and `--brain` reads, and what the page downloads."""
 
 from __future__ import annotations
 
@@ -19,6 +16,10 @@ from web.http.asking import NoAnswer, Submit, told
 from web.http.commands import Malformed
 from web.messages import ReadBrain
 
+FRESH_S = 10.0  # how old a file may be that is sent to a new request
+SENT_WITHIN_S = 300.0  # a reader that does not take the file keeps others from a new one for no longer than this
+COPY_TIMEOUT_S = 10.0  # the engine copies between two ticks
+
 
 def packed(snapshot: State) -> bytes:
     """Takes a while; not for the event loop."""
@@ -32,13 +33,9 @@ def unpacked(data: bytes) -> RatSlam:
     return read_brain(io.BytesIO(data))
 
 
-FRESH_S = 10.0  # how old a file may be that is sent to a new request
-SENT_WITHIN_S = 300.0  # a reader that does not take the file keeps others from a new one for no longer than this
-COPY_TIMEOUT_S = 10.0  # the engine copies between two ticks
-
-
 class BrainDownload:
-    """For one event loop."""
+    """The brain as a download, for one event loop: made once, in one thread, for all who ask meanwhile. One is in memory at a
+    time."""
 
     def __init__(self, submit: Submit) -> None:
         self._submit = submit
@@ -73,7 +70,7 @@ class BrainDownload:
             raise NoAnswer.of(503, str(error)) from None
         assert isinstance(copy, RatSlam)
         try:
-            return await asyncio.to_thread(_packed, copy)
+            return await asyncio.to_thread(lambda: packed(encode(copy)))
         except ValueError as error:
             raise NoAnswer.of(507, f"this brain cannot be sent: {error}") from None
 
@@ -89,7 +86,3 @@ class _Sent(Response):
                 await super().__call__(scope, receive, send)
         finally:
             self._download.done()
-
-
-def _packed(copy: RatSlam) -> bytes:
-    return packed(encode(copy))

@@ -1,15 +1,8 @@
 """The door of a class (`ratslam run --class`): a second port, in the local network, for votes and for looking on.
 
-It has a listener and a server of its own, so nothing that is said in a request decides through which door it came. What is not
-listed here is refused, also whatever the application may learn to do later. Here, too:
-
-- Host and Origin must be exactly this address and port: no name, so no name can be pointed here by others.
-- A vote must have an Origin. (Browsers tell Sec-Fetch-Site to https and loopback alone, so the rules of the main door that
-  need it say nothing here.)
-- Websockets only look on, whatever they say (web/http/security.py), and their number is limited by itself, so that a class
-  takes no place from the main page. Whoever asks too often is told so, by address.
-
-A class votes: the vote itself, and the address at which it votes, also as a QR code.
+It has a listener and a server of its own, so nothing that is said in a request decides through which door it came. What is
+not in `OPEN` is refused, also whatever the application may learn to do later. Host and Origin must be exactly this address and
+port: no name, so no name can be pointed here by others.
 """
 
 from __future__ import annotations
@@ -78,7 +71,11 @@ class Classroom:
 
 
 class ClassDoor:
-    """ASGI middleware in front of the application, in the place of the main door's Guard."""
+    """ASGI middleware in front of the application, in the place of the main door's Guard.
+
+    Websockets only look on, whatever they say (web/http/security.py), and their number is limited by itself, so that a class
+    takes no place from the main page. Whoever asks too often is told so, by address.
+    """
 
     def __init__(self, app: ASGIApp, classroom: Classroom) -> None:
         self._app, self._hosts = app, frozenset({classroom.host})
@@ -89,7 +86,7 @@ class ClassDoor:
         if scope["type"] not in ("http", "websocket"):
             return  # the main door's server begins and ends the application
         scope[FROM_CLASS] = True
-        refusal = refusal_at_door(scope, self._hosts) or self._too_much(scope)
+        refusal = _refusal_at_door(scope, self._hosts) or self._too_much(scope)
         if refusal is not None:
             await refuse(scope, receive, send, refusal, local=False)
         elif scope["type"] == "websocket":
@@ -119,9 +116,8 @@ class ClassDoor:
             self._watchers[kind] -= 1
 
     async def _http(self, scope: Scope, receive: Receive, send: Send) -> None:
-        policy = (VISER_POLICY if scope["path"].startswith("/viser") else PAGE_POLICY).format(
-            host=next(iter(self._hosts))
-        )
+        policy = VISER_POLICY if _kind(scope) == "viser" else PAGE_POLICY
+        policy = policy.format(host=next(iter(self._hosts)))
 
         async def send_with_headers(message: Message) -> None:
             if message["type"] == "http.response.start":
@@ -135,17 +131,15 @@ def _kind(scope: Scope) -> str:
     return "viser" if scope["path"].startswith("/viser") else "stream"
 
 
-def refusal_at_door(scope: Scope, hosts: frozenset[str]) -> Refusal | None:
-    """Why this request may not enter, or None."""
+def _refusal_at_door(scope: Scope, hosts: frozenset[str]) -> Refusal | None:
+    """Why this request may not enter, or None. A vote must have an Origin: browsers tell Sec-Fetch-Site to https and loopback
+    alone, so the rules of the main door that need it say nothing here."""
     method = scope["type"] if scope["type"] == "websocket" else scope["method"]
     if method not in OPEN or not OPEN[method].fullmatch(scope["path"]):
         return Refusal(403, f"a class votes and looks on; {method} {scope['path'][:80]} is for the main page alone")
     if method == "POST" and "origin" not in Headers(scope=scope):
         return Refusal(403, f"a vote needs the header Origin: http://{next(iter(hosts))}")
     return refusal_of(scope, hosts)
-
-
-NONE = "no class can reach this program; start it with `ratslam run --class`"
 
 
 class VoteBody(Body):
@@ -166,15 +160,12 @@ class ClassAddress(BaseModel):
 
 
 def add_classroom(app: FastAPI, classroom: Classroom | None, submit: Submit) -> None:
+    """The routes of votes, and of the address at which a class votes, also as a QR code."""
     limits = Limits()
     errors: dict[int | str, dict[str, Any]] = {status: {"model": Problem} for status in (403, 413, 415, 422, 429, 503)}
 
-    @app.post(
-        VOTE_PATH,
-        tags=["lessons"],
-        openapi_extra=takes(VoteBody),
-        responses={200: {"model": CommandAccepted}, **errors},
-    )
+    @app.post(VOTE_PATH, tags=["lessons"], openapi_extra=takes(VoteBody),
+              responses={200: {"model": CommandAccepted}, **errors})  # fmt: skip
     async def vote(request: Request) -> Response:
         """One vote of a class on the prediction; the same voter may change it until it is shown."""
         document = read_object(await body_of(request, MAX_VOTE_BYTES))
@@ -193,9 +184,7 @@ def add_classroom(app: FastAPI, classroom: Classroom | None, submit: Submit) -> 
     def code() -> Response:
         """The address for votes as a QR code, dark on light in both themes, since readers expect that."""
         if classroom is None:
-            raise Declined.of(404, NONE)
-        drawn = io.BytesIO()
-        segno.make(classroom.url, micro=False).save(
-            drawn, kind="svg", xmldecl=False, omitsize=True, dark="#000", light="#fff"
-        )
+            raise Declined.of(404, "no class can reach this program; start it with `ratslam run --class`")
+        drawn, made = io.BytesIO(), segno.make(classroom.url, micro=False)
+        made.save(drawn, kind="svg", xmldecl=False, omitsize=True, dark="#000", light="#fff")
         return Response(drawn.getvalue(), media_type="image/svg+xml", headers={"Cache-Control": "no-cache"})

@@ -1,17 +1,9 @@
-"""Connections at a door: counted when they are accepted, before they have said anything, and ended when they keep others waiting.
+"""Connections at a door: the sockets on which it listens, how many it has room for, and what they may owe.
 
-uvicorn counts those that ask for something, and waits for the end of a request for ever. asyncio takes whatever comes, until no
+There is a socket for whoever sits at this machine and, if it was asked for, one for a class in the local network. uvicorn
+counts those that ask for something, and waits for the end of a request for ever. asyncio takes whatever comes, until no
 descriptor is left, for anybody; then it complains thousands of times a second (cpython 151615). So each door takes its
-connections itself, one after the other, and has a number of places of its own. Where they are taken, the one that has owed
-something for longest makes room: the rest of a request, or reading on. One that owes nothing never has to go.
-
-Answers websocket requests that cannot be read. By itself, uvicorn leaves their senders waiting for ever.
-
-uvicorn reads a request with h11 and then has websockets read it again, which accepts fewer and shorter headers.
-Browsers send the cookies of every server at this address, whatever its port, so a long header need not be anybody's
-fault.
-
-Sockets to listen on: one for whoever sits at this machine, and, if it was asked for, one for a class in the local network.
+connections itself, and ends those that keep others waiting.
 """
 
 from __future__ import annotations
@@ -34,51 +26,23 @@ from websockets.exceptions import InvalidState, SecurityError
 
 from web.http.commands import problem
 
+try:
+    import resource
+except ImportError:  # a system without such limits
+    resource = None
+
+
 MAX_HEADER_BYTES = 64 * 1024  # of a request, all headers together
 websockets.http11.MAX_LINE_LENGTH = MAX_HEADER_BYTES  # read anew for each request; 8 KiB by default
-
-
-class WebSocketProtocol(WebSocketsSansIOProtocol):
-    """uvicorn's protocol, with an answer to what websockets does not accept as a request.
-
-    It also completes a refusal: uvicorn takes a request that was answered with a sentence for one that was forgotten. And the
-    program may end while a browser is closing a connection.
-    """
-
-    def shutdown(self) -> None:
-        try:
-            super().shutdown()
-        except InvalidState:  # the browser's farewell was there first
-            self.transport.close()
-
-    async def send(self, message: ASGISendEvent) -> None:
-        await super().send(message)
-        if message["type"] == "websocket.http.response.body" and not message.get("more_body", False):
-            self.handshake_complete = True
-
-    def data_received(self, data: bytes) -> None:
-        super().data_received(data)
-        fault = self.conn.handshake_exc
-        if fault is None or self.handshake_initiated or self.transport.is_closing():
-            return
-        if isinstance(fault.__cause__, SecurityError):
-            status = "431 Request Header Fields Too Large"
-            reason = (
-                f"a websocket's request may have {websockets.http11.MAX_NUM_HEADERS} headers "
-                f"of {MAX_HEADER_BYTES} bytes; this one has more"
-            )
-        else:
-            status, reason = "400 Bad Request", "a websocket is asked for with GET and without a body"
-        body = problem(reason)
-        head = (
-            f"HTTP/1.1 {status}\r\nContent-Type: application/json\r\nContent-Length: {len(body)}\r\nConnection: close"
-        )
-        self.transport.write(head.encode() + b"\r\n\r\n" + body)
-        self.transport.close()
-
-
 WAITING = 2048  # connections that the system keeps until they are accepted; what it drops comes again after a second
+
+HEADERS_S = 10.0  # for all headers of a request, from the moment when it could begin
+STALLED_S = 20.0  # without a byte of a body that is waited for, or without reading a byte of an answer
+BACK_OFF_S = 0.5  # after a connection could not be accepted
+MOST_DESCRIPTORS = 1024  # of this process, that the places are for
 Address = ipaddress.IPv4Address | ipaddress.IPv6Address
+
+_log = logging.getLogger(__name__)
 
 
 class CannotListen(Exception):  # noqa: N818
@@ -105,9 +69,8 @@ def _bound(address: Address, port: int, option: str) -> socket.socket:
         listener.listen(WAITING)  # at once: until then a second one could bind the same port
     except OverflowError:
         listener.close()
-        raise CannotListen(
-            f"Port {port} does not exist; take one from 0 (any free one) to 65535 with {option}."
-        ) from None
+        reason = f"Port {port} does not exist; take one from 0 (any free one) to 65535 with {option}."
+        raise CannotListen(reason) from None
     except OSError as error:
         listener.close()
         raise CannotListen(_why(address, port, option, error)) from None
@@ -158,9 +121,8 @@ def _in_local_network() -> Address:
         except OSError:
             address = None
     if address is None or address.is_loopback or address.is_unspecified:
-        raise CannotListen(
-            "This machine is in no network, so no class can reach it; give --class-address if it is in one."
-        )
+        reason = "This machine is in no network, so no class can reach it; give --class-address if it is in one."
+        raise CannotListen(reason)
     if address.is_global:
         reason = f"{address} can be reached from the whole internet; if that is meant, say --class-address {address}."
         raise CannotListen(reason)
@@ -172,19 +134,6 @@ def _read(host: str) -> Address | None:
         return ipaddress.ip_address(host)
     except ValueError:
         return None
-
-
-try:
-    import resource
-except ImportError:  # a system without such limits
-    resource = None
-
-HEADERS_S = 10.0  # for all headers of a request, from the moment when it could begin
-STALLED_S = 20.0  # without a byte of a body that is waited for, or without reading a byte of an answer
-BACK_OFF_S = 0.5  # after a connection could not be accepted
-MOST_DESCRIPTORS = 1024  # of this process, that the places are for
-
-_log = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True, slots=True)
@@ -237,7 +186,11 @@ class Connection(H11Protocol):
 
 
 class Door:
-    """Accepts connections on one socket, in the running loop."""
+    """Accepts connections on one socket, one after the other, in the running loop, and has a number of places of its own.
+
+    They are counted when they are accepted, before they have said anything. Where all places are taken, the one that has owed
+    something for longest makes room: the rest of a request, or reading on. One that owes nothing never has to go.
+    """
 
     def __init__(self, listener: socket.socket, room: Places, made: Callable[[], Connection], kept: set[Any]) -> None:
         """made: a new connection. kept: those that are open, as uvicorn keeps them; some speak websocket by now."""
@@ -287,9 +240,8 @@ class Door:
             crowd = list(self._open)
         owing = self._owing()
         first = sorted((one for one in crowd if one in owing), key=lambda one: owing[one][0])
-        for one in first[
-            : 1 + len(first) // 8
-        ]:  # some at once: where a thousand come, each is looked through less often
+        # some at once: where a thousand come, each is looked through less often
+        for one in first[: 1 + len(first) // 8]:
             one.transport.abort()
         return bool(first)
 
@@ -310,3 +262,44 @@ class Door:
 def _leaves(one: Any) -> bool:
     """Whether it only has to take what is left for it, or, with a websocket, to say goodbye."""
     return one.transport.is_closing() or getattr(one, "close_sent", False)
+
+
+class WebSocketProtocol(WebSocketsSansIOProtocol):
+    """uvicorn's protocol, with an answer to what websockets does not accept as a request: uvicorn leaves its sender waiting for
+    ever.
+
+    uvicorn reads a request with h11 and then has websockets read it again, which accepts fewer and shorter headers. Browsers
+    send the cookies of every server at this address, whatever its port, so a long header need not be anybody's fault.
+
+    It also completes a refusal: uvicorn takes a request that was answered with a sentence for one that was forgotten. And the
+    program may end while a browser is closing a connection.
+    """
+
+    def shutdown(self) -> None:
+        try:
+            super().shutdown()
+        except InvalidState:  # the browser's farewell was there first
+            self.transport.close()
+
+    async def send(self, message: ASGISendEvent) -> None:
+        await super().send(message)
+        if message["type"] == "websocket.http.response.body" and not message.get("more_body", False):
+            self.handshake_complete = True
+
+    def data_received(self, data: bytes) -> None:
+        super().data_received(data)
+        fault = self.conn.handshake_exc
+        if fault is None or self.handshake_initiated or self.transport.is_closing():
+            return
+        if isinstance(fault.__cause__, SecurityError):
+            status = "431 Request Header Fields Too Large"
+            reason = (
+                f"a websocket's request may have {websockets.http11.MAX_NUM_HEADERS} headers "
+                f"of {MAX_HEADER_BYTES} bytes; this one has more"
+            )
+        else:
+            status, reason = "400 Bad Request", "a websocket is asked for with GET and without a body"
+        body = problem(reason)
+        head = f"HTTP/1.1 {status}\r\nContent-Type: application/json\r\nContent-Length: {len(body)}\r\nConnection: close\r\n\r\n"
+        self.transport.write(head.encode() + body)
+        self.transport.close()

@@ -1,7 +1,4 @@
-"""The plates as vector pictures, of the moment that is shown.
-
-The picture that stands in the viewer's place until its first frame: `/api/stage.svg`.
-"""
+"""The moment that is shown as SVG: each plate by itself, and the stage, in the viewer's place until its first frame."""
 
 from __future__ import annotations
 
@@ -22,6 +19,8 @@ from web.viewer.picture import picture
 from web.viewer.primitives.palette import palette_of
 from web.viewer.vector import PlateName, vector_picture
 
+LEAST_ASPECT, MOST_ASPECT = 0.2, 6.0
+
 
 def add_pictures(app: FastAPI, latest: Latest[Snapshot], switches: Switches) -> None:
     limits = Limits()
@@ -37,17 +36,13 @@ def add_pictures(app: FastAPI, latest: Latest[Snapshot], switches: Switches) -> 
         limits.pass_on("picture")
         _, snapshot = latest.get()
         if snapshot is None:
-            raise Malformed(
-                [wrong(None, None, "the engine has not finished its first tick yet; try again in a moment")]
-            )
+            reason = "the engine has not finished its first tick yet; try again in a moment"
+            raise Malformed([wrong(None, None, reason)])
         try:
             svg = await asyncio.to_thread(vector_picture, plate, snapshot, theme, switches.on)
         except ValueError as error:
             raise Malformed([wrong("plate", plate, str(error))]) from None
         return Response(svg, headers={"Cache-Control": "no-store"}, media_type="image/svg+xml")
-
-
-LEAST_ASPECT, MOST_ASPECT = 0.2, 6.0
 
 
 def add_stage_picture(app: FastAPI, latest: Latest[Snapshot], switches: Switches) -> None:

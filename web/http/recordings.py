@@ -1,7 +1,4 @@
-"""Recordings that are sent to the page: kept in a folder of their own for as long as they play, opened, and played.
-
-A folder that is on its way from a page to the server, file by file: its files lie where they lay, and nowhere else.
-"""
+"""Recordings that a page sends: kept in a folder of their own for as long as they play, opened, and played."""
 
 from __future__ import annotations
 
@@ -12,6 +9,7 @@ import shutil
 import tempfile
 import threading
 from collections.abc import Callable, Generator
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -22,94 +20,11 @@ from pydantic import BaseModel
 from web.http.asking import ERRORS, Submit, json_response, told
 from web.http.commands import Declined, Malformed, wrong
 from web.http.security import MAX_RECORDING_BYTES, Limits
-from web.http.state import recording_fields, to_json
+from web.http.state import to_json
 from web.messages import PlayRecording, RecordingView
 
 MOST_FILES, DEEPEST = 100_000, 8
 LONGEST = 200  # bytes of a name; most disks take 255
-
-
-class Room:
-    """Bytes that a recording may still have."""
-
-    def __init__(self, most: int) -> None:
-        self.most = self.left = most
-
-    def take(self, size: int) -> None:
-        """Declined when there are not so many."""
-        if size > self.left:
-            raise Declined.of(413, f"a recording may have at most {self.most} bytes")
-        self.left -= size
-
-
-class SentFolder:
-    """One transfer. The folder is made at once; whoever asked for it deletes it (`forget`) or takes it over (`home`)."""
-
-    def __init__(self, token: str, name: str) -> None:
-        """name: of the folder, as the page tells it."""
-        self.token = token
-        with kept():
-            self.home = tempfile.mkdtemp(prefix="ratslam-recording-")
-        self.path = Path(self.home) / plain(name)
-        try:
-            with kept():
-                self.path.mkdir()
-        except Declined:
-            self.forget()
-            raise
-        self.room = Room(MAX_RECORDING_BYTES)
-        self._files = 0
-
-    def place(self, name: str) -> Path:
-        """Where a file of this name belongs, its folder made. Malformed: it would lie elsewhere, or there are too many."""
-        parts = name.replace("\\", "/").split("/")
-        if not all(map(is_plain, parts)) or len(parts) > DEEPEST:
-            reason = f"a file's name in a folder must be up to {DEEPEST} plain names of at most {LONGEST} bytes with / between"
-            raise Malformed([wrong("name", name[:80], reason)])
-        self._files += 1
-        if self._files > MOST_FILES:
-            raise Malformed([wrong("name", name[:80], f"a folder with more than {MOST_FILES} files")])
-        path = self.path.joinpath(*parts)
-        try:
-            with kept():
-                path.parent.mkdir(parents=True, exist_ok=True)
-        except (FileExistsError, NotADirectoryError):
-            raise Malformed(
-                [wrong("name", name[:80], "a file of this folder has the name of one of its folders")]
-            ) from None
-        if path.is_dir():
-            raise Malformed([wrong("name", name[:80], "a folder of this folder has this name")])
-        return path
-
-    def forget(self) -> None:
-        shutil.rmtree(self.home, ignore_errors=True)
-
-
-def is_plain(name: str) -> bool:
-    """Whether this can be the name of a file or a folder on any disk."""
-    return name.strip(". ") != "" and name.isprintable() and len(name.encode(errors="replace")) <= LONGEST
-
-
-def plain(name: str) -> str:
-    """The bare name in what a browser calls a file, without folders and control characters; of a long one the end, which tells
-    the format."""
-    bare = "".join(c for c in name.replace("\\", "/").rpartition("/")[2] if c.isprintable())
-    while len(bare.encode(errors="replace")) > LONGEST:
-        bare = bare[1:]
-    return bare if is_plain(bare) else "recording"
-
-
-@contextlib.contextmanager
-def kept() -> Generator[None]:
-    """What is written here is kept, or Declined says why not. Names that are taken are for the caller."""
-    try:
-        yield
-    except (FileExistsError, NotADirectoryError):
-        raise
-    except OSError as error:
-        raise Declined.of(507, f"the recording cannot be kept: {error.strerror or error}") from None
-
-
 PLAY_TIMEOUT_S = 60.0
 MOST_ARRIVING = 4  # recordings in one file that are being sent at once
 TOKEN = "^[0-9a-f]{8,64}$"  # which page sends what
@@ -195,7 +110,7 @@ class SentRecordings:
             view = await self._play(request, path)
             self._forget_played()
             self._folder = home
-        return to_json(recording_fields(view))
+        return to_json(asdict(view))
 
     def forget(self) -> None:
         """Delete what plays, and what was on its way."""
@@ -266,6 +181,60 @@ def add_recordings(app: FastAPI, opener: Opener | None, submit: Submit) -> SentR
     return sent
 
 
+class Room:
+    """Bytes that a recording may still have."""
+
+    def __init__(self, most: int) -> None:
+        self.most = self.left = most
+
+    def take(self, size: int) -> None:
+        """Declined when there are not so many."""
+        if size > self.left:
+            raise Declined.of(413, f"a recording may have at most {self.most} bytes")
+        self.left -= size
+
+
+class SentFolder:
+    """A folder that is sent file by file; its files lie where they lay, and nowhere else. It is made at once; whoever asked for
+    it deletes it (`forget`) or takes it over (`home`)."""
+
+    def __init__(self, token: str, name: str) -> None:
+        """name: of the folder, as the page tells it."""
+        self.token, self.home = token, _new_folder()
+        self.path = Path(self.home) / plain(name)
+        try:
+            with kept():
+                self.path.mkdir()
+        except Declined:
+            self.forget()
+            raise
+        self.room = Room(MAX_RECORDING_BYTES)
+        self._files = 0
+
+    def place(self, name: str) -> Path:
+        """Where a file of this name belongs, its folder made. Malformed: it would lie elsewhere, or there are too many."""
+        parts = name.replace("\\", "/").split("/")
+        if not all(map(_is_plain, parts)) or len(parts) > DEEPEST:
+            reason = f"a file's name in a folder must be up to {DEEPEST} plain names of at most {LONGEST} bytes with / between"
+            raise Malformed([wrong("name", name[:80], reason)])
+        self._files += 1
+        if self._files > MOST_FILES:
+            raise Malformed([wrong("name", name[:80], f"a folder with more than {MOST_FILES} files")])
+        path = self.path.joinpath(*parts)
+        try:
+            with kept():
+                path.parent.mkdir(parents=True, exist_ok=True)
+        except (FileExistsError, NotADirectoryError):
+            reason = "a file of this folder has the name of one of its folders"
+            raise Malformed([wrong("name", name[:80], reason)]) from None
+        if path.is_dir():
+            raise Malformed([wrong("name", name[:80], "a folder of this folder has this name")])
+        return path
+
+    def forget(self) -> None:
+        shutil.rmtree(self.home, ignore_errors=True)
+
+
 async def _write(request: Request, path: Path, room: Room) -> None:
     """The body into a file, part by part. Raises Declined when there is no room for it or the disk is full."""
     with kept(), contextlib.closing(await asyncio.to_thread(path.open, "wb")) as file:
@@ -277,3 +246,28 @@ async def _write(request: Request, path: Path, room: Room) -> None:
 def _new_folder() -> str:
     with kept():
         return tempfile.mkdtemp(prefix="ratslam-recording-")
+
+
+@contextlib.contextmanager
+def kept() -> Generator[None]:
+    """What is written here is kept, or Declined says why not. Names that are taken are for the caller."""
+    try:
+        yield
+    except (FileExistsError, NotADirectoryError):
+        raise
+    except OSError as error:
+        raise Declined.of(507, f"the recording cannot be kept: {error.strerror or error}") from None
+
+
+def _is_plain(name: str) -> bool:
+    """Whether this can be the name of a file or a folder on any disk."""
+    return name.strip(". ") != "" and name.isprintable() and len(name.encode(errors="replace")) <= LONGEST
+
+
+def plain(name: str) -> str:
+    """The bare name in what a browser calls a file, without folders and control characters; of a long one the end, which tells
+    the format."""
+    bare = "".join(c for c in name.replace("\\", "/").rpartition("/")[2] if c.isprintable())
+    while len(bare.encode(errors="replace")) > LONGEST:
+        bare = bare[1:]
+    return bare if _is_plain(bare) else "recording"

@@ -1,21 +1,8 @@
 """Who may talk to the server: exact Host and Origin, JSON only, bounded bodies, and the headers that bind the browser.
 
 A local server can be reached by every page that its user has open (DNS rebinding, cross-site websockets). The check is
-therefore pure ASGI: it runs before a websocket is accepted, which ordinary HTTP middleware does not. The rules:
-
-- Host must be one of ours with our port, once. Missing or repeated: 400. Anything else: 403.
-- Origin, where there is one, must be "http://" + that Host. A websocket must have one (browsers always send it, so
-  whoever leaves it out is a program and can add it); other requests may come without, as curl's do.
-- What is costly to make (a brain, a whole map, a world) is not read for another site (Sec-Fetch-Site).
-- A request that is neither GET nor HEAD must not be cross-site (Sec-Fetch-Site) and must carry JSON of at most 64 KiB,
-  24 MiB with plans and 256 MiB with situations; a brain that is uploaded is application/octet-stream (no form can send
-  that either) of at most 256 MiB. So is a recording, of at most 900 MB, which goes to a file part by part.
-- A page that only looks on changes nothing; its requests carry its id (X-Page).
-
-Pages that only look on: what their websockets may say. Everything else is refused here, whatever the page itself offers.
-
-Such a page has an id that begins with `watch-`. It says so itself, so that it stays one when the connection or the server
-comes back. Whoever comes from the network of a class is one whatever it says (web/http/class_door.py).
+therefore pure ASGI: it runs before a websocket is accepted, which ordinary HTTP middleware does not. A page that only looks on
+changes nothing: what is more than a look is refused here, whatever the page itself offers.
 """
 
 from __future__ import annotations
@@ -39,24 +26,23 @@ BRAIN_PATH, MAX_BRAIN_BYTES = "/api/brain", 256 * 1024 * 1024
 RECORDING_PATH, MAX_RECORDING_BYTES = "/api/recordings", 900_000_000
 PLAN_PATH, MAX_PLAN_BYTES = "/api/worlds/open", 24 * 1024 * 1024  # a picture of 16 MB in base64
 OPEN_SITUATION_PATH, MAX_SITUATION_BYTES = "/api/situation/open", 2 * SITUATION_BYTES  # as a text in JSON
-COSTLY_PATHS = (
-    BRAIN_PATH,
-    "/api/state",
-    "/api/experience/",
-    "/api/experiments",
-    "/api/export",
-    "/api/world",
-    "/api/picture/",
-)
 VOTE_PATH, MAX_VOTE_BYTES = "/api/vote", 4096
 _MOST = {
     VOTE_PATH: MAX_VOTE_BYTES,
     BRAIN_PATH: MAX_BRAIN_BYTES,
     PLAN_PATH: MAX_PLAN_BYTES,
     RECORDING_PATH: MAX_RECORDING_BYTES,
+    OPEN_SITUATION_PATH: MAX_SITUATION_BYTES,
 }
-_MOST[OPEN_SITUATION_PATH] = MAX_SITUATION_BYTES
+COSTLY_PATHS = (
+    BRAIN_PATH, "/api/state", "/api/experience/", "/api/experiments", "/api/export", "/api/world", "/api/picture/",
+)  # fmt: skip
 HOST_NAMES = ("127.0.0.1", "localhost", "[::1]")
+WATCHER = "watch-"
+PAGE_HEADER = "x-page"  # with it, every request of a page that looks on says whose it is
+FROM_CLASS = "ratslam.from_class"  # in the scope of whatever comes through the door of the class
+LOOKS = ("got", "view", "follow", "camera", "theme", "tabs")  # they concern the page alone
+NO = "this page only looks on; whoever has the main page steers"
 
 PAGE_POLICY = (
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; connect-src 'self' ws://{host}; "
@@ -78,7 +64,17 @@ class Refusal:
 
 
 class Guard:
-    """ASGI middleware in front of everything; see the module's rules."""
+    """ASGI middleware in front of everything. The rules:
+
+    - Host must be one of ours with our port, once. Missing or repeated: 400. Anything else: 403.
+    - Origin, where there is one, must be "http://" + that Host. A websocket must have one (browsers always send it, so
+      whoever leaves it out is a program and can add it); other requests may come without, as curl's do.
+    - What is costly to make (a brain, a whole map, a world) is not read for another site (Sec-Fetch-Site).
+    - A request that is neither GET nor HEAD must not be cross-site (Sec-Fetch-Site) and must carry JSON of at most 64 KiB,
+      24 MiB with plans and 256 MiB with situations; a brain that is uploaded is application/octet-stream (no form can send
+      that either) of at most 256 MiB. So is a recording, of at most 900 MB, which goes to a file part by part.
+    - It must not come from a page that only looks on; such a page sends its id with every request (X-Page).
+    """
 
     def __init__(self, app: ASGIApp, port: int) -> None:
         self.app = app
@@ -231,15 +227,9 @@ class Limits:
             raise Declined([wrong("type", kind, refusal)], 429)
 
 
-WATCHER = "watch-"
-PAGE_HEADER = "x-page"  # with it, every request of a page that looks on says whose it is
-FROM_CLASS = "ratslam.from_class"  # in the scope of whatever comes through the door of the class
-LOOKS = ("got", "view", "follow", "camera", "theme", "tabs")  # they concern the page alone
-NO = "this page only looks on; whoever has the main page steers"
-
-
 def looks_on(page: str) -> bool:
-    """Whether a page with this id only looks on."""
+    """Whether a page with this id only looks on. It says so itself, so that it stays one when the connection or the server comes
+    back. Whoever comes from the network of a class is one whatever it says (web/http/class_door.py)."""
     return page.startswith(WATCHER)
 
 

@@ -1,21 +1,8 @@
 """The page's websocket: the newest state to everyone, ten to twenty times a second, and commands back.
 
-Out: {"type": "hello", ...} once; {"type": "waking", "doing"} before the first tick; {"type": "state", "state":
-<contract>, "page": ...}; {"type": "events", ...}; {"type": "panel", ...}: what the open tabs of the side panel show,
-framed with arrays (web/panel); {"type": "answer", "id", ...} to every message that carried an id or went wrong;
-{"type": "notice", "text"}: why something done on this page's plates was refused. In: any command of `POST
-/api/commands` with an optional "id". Messages that concern this page alone: {"type": "view", "name"}, {"type": "follow",
-"on"}: its camera goes with the robot; {"type": "theme", "name"}; {"type": "tabs", "names"}: the open tabs of the panel, since
-only those are sent; {"type": "camera", "name", "at"}: where a camera had been turned from a view. {"type": "replay",
-"event"} plays the correction of a loop closure again, for all pages of its theme. {"type": "click", "at", "shift", "drawn"}: on
-the plates, or on the drawing in their place; it does what a pointer there means, and its answer says if not, and why.
-{"type": "switch", "name", "on"} concerns all pages, and {"type": "present", "on"} those that only look on: they hear
-{"type": "presenting", "on"}, and may say what concerns themselves alone. Each browser has its own sender, and the newest
-state wins. A browser that takes nothing for five seconds is disconnected. A page that connects with `got=1` says
-{"type": "got"} after each state and gets no other before, so that a slow page never falls behind because of what lies in
-buffers.
-
-One page that listens to the stream.
+Each browser has its own sender, and the newest state wins. A browser that takes nothing for five seconds is disconnected. A
+page that connects with `got=1` says {"type": "got"} after each state and gets no other before, so that a slow page never falls
+behind because of what lies in buffers.
 """
 
 from __future__ import annotations
@@ -45,52 +32,26 @@ from web.viewer.camera_views import Camera
 from web.viewer.picture import meant
 
 SEND_TIMEOUT_S = 5.0
-
-
-class Client:
-    def __init__(
-        self, socket: WebSocket, page: str, confirms: bool, reader: PanelReader, watches: bool = False
-    ) -> None:
-        self.socket = socket
-        self.confirms = confirms  # says "got" to each state
-        self.got = asyncio.Event()
-        self.page = page
-        self.watches = watches  # it only looks on
-        self.presents = False  # in larger type, for a class
-        self.reader = reader  # the side panel's, for this page
-        self.news = asyncio.Event()
-        self.limits = Limits()
-        self.moving = False  # its last drive command asked for motion
-        self.events_of: tuple[int, int] = (-1, -1)  # run and number of the last event it got
-        self.tasks: set[asyncio.Task[None]] = set()
-
-    async def send(self, message: bytes | str) -> None:
-        """Text, or bytes where a panel's part has arrays."""
-        async with asyncio.timeout(SEND_TIMEOUT_S):  # not wait_for, which may swallow a cancellation
-            if isinstance(message, str):
-                await self.socket.send_text(message)
-            else:
-                await self.socket.send_bytes(message)
-
-    async def wait_for_news(self, at_most_s: float | None) -> None:
-        with contextlib.suppress(TimeoutError):
-            async with asyncio.timeout(at_most_s):
-                await self.news.wait()
-        self.news.clear()
-
-    def background(self, work: Coroutine[Any, Any, None]) -> None:
-        """Run work beside the page's listening. It ends with the page, and its failure ends nothing else."""
-        task = asyncio.create_task(work)
-        self.tasks.add(task)
-        task.add_done_callback(lambda done: (self.tasks.discard(done), done.cancelled() or done.exception()))
-
-
 PERIOD_S = 0.045  # at x1 the engine ticks ten times a second; the effect of a command is shown sooner
 MOST_CLIENTS = 32
 
 
 class Stream:
-    """All pages that listen to one session."""
+    """All pages that listen to one session.
+
+    Out: {"type": "hello", ...} once; {"type": "waking", "doing"} before the first tick; {"type": "state", "state": <contract>,
+    "page": ...}; {"type": "events", ...}; {"type": "panel", ...}: what the open tabs of the side panel show, framed with arrays
+    (web/panel); {"type": "answer", "id", ...} to every message that carried an id or went wrong; {"type": "notice", "text"}: why
+    something done on this page's plates was refused; {"type": "presenting", "on"} to pages that only look on.
+
+    In: any command of `POST /api/commands` with an optional "id". Messages that concern this page alone, and the only ones of a
+    page that only looks on: {"type": "view", "name"}; {"type": "follow", "on"}: its camera goes with the robot; {"type": "theme",
+    "name"}; {"type": "tabs", "names"}: the open tabs of the panel, since only those are sent; {"type": "camera", "name", "at"}:
+    where a camera had been turned from a view. {"type": "replay", "event"} plays the correction of a loop closure again, for all
+    pages of its theme. {"type": "click", "at", "shift", "drawn"}: on the plates, or on the drawing in their place; it does what a
+    pointer there means, and its answer says if not, and why. {"type": "switch", "name", "on"} concerns all pages, and {"type":
+    "present", "on"} those that only look on.
+    """
 
     def __init__(
         self, latest: Latest[Snapshot], submit: Submit, cameras: Cameras, themes: Themes, switches: Switches
@@ -138,8 +99,6 @@ class Stream:
             self._wake()  # it may have been the one that presents
             await end_all(tasks | client.tasks)
             await close_quietly(socket)
-
-    # ------------------------------------------------------------ out
 
     def notify(self, page: str, text: str) -> None:
         """Send a sentence to one page alone."""
@@ -193,8 +152,6 @@ class Stream:
             return None
         client.events_of = (snapshot.run, news[-1]["number"] if news else -1)
         return _text({"type": "events", "run": snapshot.run, "fresh": fresh, "events": news})
-
-    # ------------------------------------------------------------ in
 
     async def _listen(self, client: Client) -> None:
         while True:
@@ -314,6 +271,46 @@ class Stream:
             self._driver = None
             if client.moving:
                 self._submit(Drive(type="drive", speed=0.0, yaw_rate=0.0))
+
+
+class Client:
+    """One page that listens to the stream."""
+
+    def __init__(
+        self, socket: WebSocket, page: str, confirms: bool, reader: PanelReader, watches: bool = False
+    ) -> None:
+        self.socket = socket
+        self.confirms = confirms  # says "got" to each state
+        self.got = asyncio.Event()
+        self.page = page
+        self.watches = watches  # it only looks on
+        self.presents = False  # in larger type, for a class
+        self.reader = reader  # the side panel's, for this page
+        self.news = asyncio.Event()
+        self.limits = Limits()
+        self.moving = False  # its last drive command asked for motion
+        self.events_of: tuple[int, int] = (-1, -1)  # run and number of the last event it got
+        self.tasks: set[asyncio.Task[None]] = set()
+
+    async def send(self, message: bytes | str) -> None:
+        """Text, or bytes where a panel's part has arrays."""
+        async with asyncio.timeout(SEND_TIMEOUT_S):  # not wait_for, which may swallow a cancellation
+            if isinstance(message, str):
+                await self.socket.send_text(message)
+            else:
+                await self.socket.send_bytes(message)
+
+    async def wait_for_news(self, at_most_s: float | None) -> None:
+        with contextlib.suppress(TimeoutError):
+            async with asyncio.timeout(at_most_s):
+                await self.news.wait()
+        self.news.clear()
+
+    def background(self, work: Coroutine[Any, Any, None]) -> None:
+        """Run work beside the page's listening. It ends with the page, and its failure ends nothing else."""
+        task = asyncio.create_task(work)
+        self.tasks.add(task)
+        task.add_done_callback(lambda done: (self.tasks.discard(done), done.cancelled() or done.exception()))
 
 
 def _choice(document: dict[str, Any], names: tuple[str, ...]) -> str:

@@ -1,14 +1,8 @@
-"""What the robot senses, what it believes and where it is going. Parts of a snapshot.
+"""What the robot senses, what it believes, where it is going, what only people are shown, one tick in detail, and a second brain
+on the same senses. Parts of a snapshot.
 
 The map frame is the experience map's own (first experience at its origin); pose cells are indices [theta, y, x], one layer
 10 degrees. SI units and radians.
-
-What only people are shown: where the wheels alone would be, how sure the estimate is, how a closure moved the map, and
-which places of the office the map knows. Parts of a snapshot. SI units and radians.
-
-One tick in detail: its stages, and what its parts cost. Parts of a snapshot.
-
-Two brains on the same senses: the second one as it is drawn, and how the two differ. Parts of a snapshot.
 """
 
 from __future__ import annotations
@@ -173,12 +167,10 @@ class Belief:
     corrected: int  # how often evidence proved it elsewhere: carried unnoticed, slipped, or merged where it was not
     apart: int  # experiences on submaps other than the robot's
     joined: int  # submaps that were merged
-    spared: int  # sights on familiar ground that became no experience
+    spared: int  # observations on familiar ground that became no experience
     links_spared: int  # links between places that had enough of them
     forgotten: int  # links of views to pose cells
-    odds: float | None = (
-        None  # of where it believes itself to be, against all else; None: not carried, or it believes nothing
-    )
+    odds: float | None = None  # of its believed place against all else; None: not carried, or it believes nothing
     places: int = 0  # where a robot that was carried may be
 
 
@@ -205,10 +197,8 @@ class Goal:
     remaining_m: float | None
     route_xy: NDArray[np.float32]  # (r, 2) map frame, from the robot to the goal; empty when none is known
     route_arrival_s: NDArray[np.float32]  # (r,) seconds from now
-    places_xy: NDArray[np.float32] = field(
-        default_factory=lambda: np.zeros((0, 2), np.float32)
-    )  # (k, 2) map frame, of all
-    # experiences that stand for the goal
+    # (k, 2) map frame, of all experiences that stand for the goal
+    places_xy: NDArray[np.float32] = field(default_factory=lambda: np.zeros((0, 2), np.float32))
     lost: bool = False  # the robot does not know where it is, and so only believes what it says of the goal
     followed: bool = True  # the robot is on its way there, or there: nobody drives it, nor was it told to explore
 
@@ -283,9 +273,6 @@ class TickWalk:
     at: int
 
 
-Kind = Literal["packet", "view", "experience", "link"]
-
-
 @dataclass(frozen=True, slots=True)
 class BrainFigures:
     """One of two brains in figures."""
@@ -296,9 +283,7 @@ class BrainFigures:
     links: int
     relocalisations: int
     error_map_m: float | None  # None without truth
-    off_m: (
-        float | None
-    )  # how far the robot is from where this brain believes it to be, judged by where its experience was made
+    off_m: float | None  # from the robot to where this brain believes it to be, judged by where its experience was made
     lost: bool
 
 
@@ -306,7 +291,7 @@ class BrainFigures:
 class Difference:
     """What two brains differ in, and since when."""
 
-    kind: Kind
+    kind: Literal["packet", "view", "experience", "link"]
     tick: int
     time_s: float
     words: str

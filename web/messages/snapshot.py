@@ -4,20 +4,6 @@ Snapshots are immutable: frozen dataclasses over fresh read-only arrays. Parts t
 parameters, events) stay the same object from snapshot to snapshot while they are unchanged, so `is` tells what to
 redraw. Frames: `office` is the simulator's true frame, `map` the experience map's own (first experience at its origin),
 `cells` are pose-cell indices [theta, y, x], one layer 10 degrees. SI units and radians.
-
-The office as the page draws it: what stands, what moves, and which edition an editor has made. Parts of a snapshot.
-
-The office frame is the simulator's true one. SI units and radians.
-
-Where on the run's timeline the page is: live or in the past, on which branch, and between which marks it loops.
-
-The lesson that a class is in, and what `run_until` waits for. Parts of a snapshot.
-
-The recording that is played. Part of a snapshot.
-
-The trial of an experiment that somebody watches. Part of a snapshot.
-
-Brains that are worth comparing with the first as it is now, as choices of the page. app/config/pairs.py makes them.
 """
 
 from __future__ import annotations
@@ -154,7 +140,8 @@ class Side:
 
 @dataclass(frozen=True, slots=True)
 class TimeView:
-    """The live branch goes to `end_s`; `past`: what is shown is an earlier moment of it."""
+    """Where on the run's timeline the page is. The live branch goes to `end_s`; `past`: what is shown is an earlier moment of
+    it."""
 
     past: bool
     end_tick: int
@@ -256,7 +243,7 @@ class UntilView:
 
 @dataclass(frozen=True, slots=True)
 class RecordingView:
-    """What the page tells of it."""
+    """The recording that is played."""
 
     name: str
     format: str  # "Donkey tub", "MCAP", ...
@@ -271,7 +258,7 @@ TrialState = Literal["running", "over", "ended"]  # ended: by somebody's own ord
 
 @dataclass(frozen=True, slots=True)
 class TrialView:
-    """What the page tells of the trial."""
+    """The trial of an experiment that somebody watches."""
 
     experiment: str
     title: str
@@ -292,7 +279,10 @@ Since = Literal["beginning", "now"]
 
 @dataclass(frozen=True, slots=True)
 class PairChoice:
-    """since: the run begins anew with both, or goes on with a copy that can become such a brain while it runs."""
+    """A brain that is worth comparing with the first as it is now; app/config/pairs.py makes them.
+
+    since: the run begins anew with both, or goes on with a copy that can become such a brain while it runs.
+    """
 
     name: str
     title: str
@@ -417,9 +407,7 @@ class Snapshot:
     pairs: tuple[PairChoice, ...] = ()  # brains that could be compared with the first
     additions_off: AdditionsOff = AdditionsOff()
     map_turn_rad: float = 0.0  # turns the map, for the eye only, so that it lies as the office does
-    map_in_office: Pose | None = (
-        None  # the map's frame by the fit after which `error_map_m` is measured; None without truth
-    )
+    map_in_office: Pose | None = None  # the map's frame, fitted as for `error_map_m`; None without truth
     ghost: Ghost | None = None  # None without truth
     spread: Spread | None = None  # None without a map
     closures: tuple[Closure, ...] = ()  # of late, oldest first

@@ -1,13 +1,8 @@
 """The side panel as data: what each part holds, how often it is sent, and what each page has been sent.
 
-A part's message is {"type": "panel", "part", "data"}, framed with its arrays if it has any (packing.py). Only the parts
-of open tabs are sent, only when they have changed, and only those arrays that have changed. Each is made once for all
-pages.
-
-A message with arrays: a head of JSON and the bytes of each array, so that the page can draw them as they are.
-
-Four bytes with the head's length (little-endian), the head, then the arrays one after the other. Each array begins at a
-multiple of four: the head is padded with spaces, an array with zeros.
+A part's message is {"type": "panel", "part", "data"}, framed with its arrays if it has any, so that the page can draw them as
+they are. Only the parts of open tabs are sent, only when they have changed, and only those arrays that have changed. Each is
+made once for all pages.
 """
 
 from __future__ import annotations
@@ -31,42 +26,11 @@ from web.panel.truth import numbers, office, series, tags
 from web.panel.tune import tune
 from web.switches import SWITCHES, Switches
 
-MANY_BYTES = 4096  # larger colour pictures go as JPEG with whole colours, a fifth of the bytes
-_JPEG = (cv2.IMWRITE_JPEG_QUALITY, 93, cv2.IMWRITE_JPEG_SAMPLING_FACTOR, cv2.IMWRITE_JPEG_SAMPLING_FACTOR_444)
-
-
-@dataclass(frozen=True, slots=True)
-class Packed:
-    """One array: how to read it, and its bytes."""
-
-    kind: str  # "u1", "u2", "f4": numbers; "jpeg": a picture that the browser unpacks
-    shape: tuple[int, ...]
-    body: bytes
-
-
-def packed(array: NDArray[Any]) -> Packed:
-    """An array as it is sent: large colour pictures as JPEG, all others as they are."""
-    if array.dtype == np.uint8 and array.ndim == 3 and array.nbytes > MANY_BYTES:
-        _, image = cv2.imencode(".jpg", np.ascontiguousarray(array[..., ::-1]), _JPEG)
-        return Packed("jpeg", array.shape, image.tobytes())
-    little = np.ascontiguousarray(array, array.dtype.newbyteorder("<"))
-    return Packed(f"{array.dtype.kind}{array.dtype.itemsize}", array.shape, little.tobytes())
-
-
-def framed(head: dict[str, Any], arrays: Mapping[str, Packed]) -> bytes:
-    """The whole message; the head gets the arrays' names, kinds, shapes and lengths in their order."""
-    listed = [{"name": n, "kind": p.kind, "shape": p.shape, "bytes": len(p.body)} for n, p in arrays.items()]
-    text = _to_four(orjson.dumps({**head, "arrays": listed}), b" ")
-    bodies = (_to_four(array.body, b"\0") for array in arrays.values())
-    return b"".join((len(text).to_bytes(4, "little"), text, *bodies))
-
-
-def _to_four(raw: bytes, filler: bytes) -> bytes:
-    return raw + filler * (-len(raw) % 4)
-
-
 TABS = ("Senses", "Memory", "Inspect", "Tick", "Truth", "Office", "Tune")
 SOON_S = 0.05  # after this time, content that came too early is tried again
+
+MANY_BYTES = 4096  # larger colour pictures go as JPEG with whole colours, a fifth of the bytes
+_JPEG = (cv2.IMWRITE_JPEG_QUALITY, 93, cv2.IMWRITE_JPEG_SAMPLING_FACTOR, cv2.IMWRITE_JPEG_SAMPLING_FACTOR_444)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -92,6 +56,10 @@ def _switches(on: frozenset[str]) -> Content:
     return Content({"switches": rows})
 
 
+def _office(snapshot: Snapshot) -> tuple[Any, ...]:
+    return snapshot.living, snapshot.parameters, snapshot.presets, snapshot.preset, snapshot.switches
+
+
 PARTS = (
     Part("Senses", "views", 6, lambda s: (s.snapshot, s.recent), views),
     Part("Senses", "cells", 3, lambda s: (s.snapshot.pose_cells,), cells),
@@ -109,10 +77,6 @@ PARTS = (
     Part("Office", "tags", 5, lambda s: (s.snapshot.tags,), tags),
     Part("Tune", "tune", 5, lambda s: (s.snapshot.parameters,), tune),
 )
-
-
-def _office(snapshot: Snapshot) -> tuple[Any, ...]:
-    return snapshot.living, snapshot.parameters, snapshot.presets, snapshot.preset, snapshot.switches
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -197,3 +161,35 @@ class PanelReader:
             self._news.append(framed(head, arrays))
         else:
             self._news.append(orjson.dumps(head).decode())
+
+
+@dataclass(frozen=True, slots=True)
+class Packed:
+    """One array: how to read it, and its bytes."""
+
+    kind: str  # "u1", "u2", "f4": numbers; "jpeg": a picture that the browser unpacks
+    shape: tuple[int, ...]
+    body: bytes
+
+
+def packed(array: NDArray[Any]) -> Packed:
+    """An array as it is sent: large colour pictures as JPEG, all others as they are."""
+    if array.dtype == np.uint8 and array.ndim == 3 and array.nbytes > MANY_BYTES:
+        _, image = cv2.imencode(".jpg", np.ascontiguousarray(array[..., ::-1]), _JPEG)
+        return Packed("jpeg", array.shape, image.tobytes())
+    little = np.ascontiguousarray(array, array.dtype.newbyteorder("<"))
+    return Packed(f"{array.dtype.kind}{array.dtype.itemsize}", array.shape, little.tobytes())
+
+
+def framed(head: dict[str, Any], arrays: Mapping[str, Packed]) -> bytes:
+    """The whole message: four bytes with the head's length (little-endian), the head as JSON, then the arrays one after the
+    other. The head gets the arrays' names, kinds, shapes and lengths in their order. Each array begins at a multiple of four:
+    the head is padded with spaces, an array with zeros."""
+    listed = [{"name": n, "kind": p.kind, "shape": p.shape, "bytes": len(p.body)} for n, p in arrays.items()]
+    text = _to_four(orjson.dumps({**head, "arrays": listed}), b" ")
+    bodies = (_to_four(array.body, b"\0") for array in arrays.values())
+    return b"".join((len(text).to_bytes(4, "little"), text, *bodies))
+
+
+def _to_four(raw: bytes, filler: bytes) -> bytes:
+    return raw + filler * (-len(raw) % 4)

@@ -1,7 +1,4 @@
-"""The content of a part of the panel.
-
-Numbers as the panel writes them, and tables of them.
-"""
+"""The content of a part of the panel, and its numbers and tables as the panel writes them."""
 
 from __future__ import annotations
 
@@ -22,6 +19,11 @@ class Content:
 
 
 Rows = list[tuple[str, str]]
+
+
+def table(title: str, rows: Rows, empty: str = "") -> dict[str, Any]:
+    """Two columns of plain words; `empty` says why there are none."""
+    return {"title": title, "rows": rows, "empty": empty}
 
 
 def clock(seconds: float) -> str:
@@ -52,8 +54,3 @@ def counted(count: int, one: str, many: str) -> str:
 
 def often(count: int) -> str:
     return "once" if count == 1 else f"{count} times"
-
-
-def table(title: str, rows: Rows, empty: str = "") -> dict[str, Any]:
-    """Two columns of plain words; `empty` says why there are none."""
-    return {"title": title, "rows": rows, "empty": empty}

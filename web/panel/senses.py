@@ -1,6 +1,5 @@
-"""Senses: the camera's image, the stored view most like it, how different they are, and which cells are active.
-
-Tick: one tick stage by stage, and what the parts of a tick cost.
+"""Senses: the camera's image, the stored view most like it, how different they are, and which cells are active. Tick: one tick
+stage by stage, and what its parts cost.
 """
 
 from __future__ import annotations
@@ -18,6 +17,7 @@ from web.panel.part import Content
 
 RECENT = 60
 MOST = 65535  # the strongest column of pose cells
+RATE = "robot.sensor_rate_hz"  # ticks a second
 
 
 class RecentViews:
@@ -67,11 +67,8 @@ def _verdict(senses: Senses) -> dict[str, str]:
         return {"tone": "false", "words": words}
     if senses.active_view < 0:
         return {"tone": "none", "words": "nothing to see"}
-    return (
-        {"tone": "new", "words": "new: recruited"}
-        if senses.recruited
-        else {"tone": "known", "words": "known: recalled"}
-    )
+    tone, words = ("new", "new: recruited") if senses.recruited else ("known", "known: recalled")
+    return {"tone": tone, "words": words}
 
 
 def _difference(senses: Senses) -> dict[str, Any]:
@@ -101,9 +98,6 @@ def from_above(layer: PoseCellLayer) -> tuple[NDArray[np.uint32], NDArray[np.uin
     sums = np.bincount(row.ravel(), weights=layer.activity, minlength=len(pairs))
     share = np.rint(sums / max(float(sums.max(initial=0.0)), 1e-12) * MOST)
     return (pairs % (n_y * n_x)).astype(np.uint32), (pairs // (n_y * n_x)).astype(np.uint8), share.astype(np.uint16)
-
-
-RATE = "robot.sensor_rate_hz"  # ticks a second
 
 
 def walk(walk: TickWalk | None) -> Content:

@@ -1,6 +1,5 @@
-"""Truth: how far map and odometry are from the robot's true place, and how far the map is from its own links.
-
-Office: what moves in this world, one switch each, the robot's presets, and the places that people have named.
+"""Truth: how far map and odometry are from the robot's true place, and how far the map is from its own links. Office: what moves
+in this world, one switch each, the robot's presets, and the places that people have named.
 """
 
 from __future__ import annotations
@@ -14,6 +13,8 @@ from web.panel.part import Content, counted, number, table
 from web.panel.tune import knob
 
 COLUMNS = ("time_s", "map_error_m", "odometry_error_m", "views", "experiences", "residual_mm", "residual_mrad")
+NOTHING = "Nothing lives in this world: no people, doors, lamps, boxes, daylight or script. The pencil above lets you draw some."
+MOST = 40  # switches of one kind; beyond that, click on the door itself
 
 
 def numbers(snapshot: Snapshot) -> Content:
@@ -36,38 +37,19 @@ def series(series: Series) -> Content:
     return Content({"residual": now}, {name: getattr(series, name).astype(np.float32) for name in COLUMNS})
 
 
-NOTHING = "Nothing lives in this world: no people, doors, lamps, boxes, daylight or script. The pencil above lets you draw some."
-MOST = 40  # switches of one kind; beyond that, click on the door itself
-
-
 def office(
-    layer: LivingLayer | None,
-    parameters: tuple[Parameter, ...],
-    presets: tuple[str, ...],
-    preset: str,
+    layer: LivingLayer | None, parameters: tuple[Parameter, ...], presets: tuple[str, ...], preset: str,
     shown: tuple[str, ...],
-) -> Content:
+) -> Content:  # fmt: skip
     """shown: those parameters of the office that have an effect in this world."""
     doors, lamps = [], []
     if layer is not None:
         doors = list(zip(layer.door_names, map(bool, layer.door_wanted), strict=True))[:MOST]
         lamps = list(zip(layer.lamp_names, map(bool, layer.lamp_on), strict=True))[:MOST]
     wanted = {f"office.{name}" for name in shown}
-    return Content(
-        {
-            "presets": presets,
-            "preset": preset,
-            "knobs": [knob(parameter) for parameter in parameters if parameter.name in wanted],
-            "doors": doors,
-            "lamps": lamps,
-            "words": words(layer, shown),
-        }
-    )
-
-
-def tags(places: tuple[TaggedPlace, ...]) -> Content:
-    """The places that people have named, in the order in which they did."""
-    return Content({"tags": [place.name for place in places]})
+    knobs = [knob(parameter) for parameter in parameters if parameter.name in wanted]
+    data = {"presets": presets, "preset": preset, "knobs": knobs, "doors": doors, "lamps": lamps}
+    return Content({**data, "words": words(layer, shown)})
 
 
 def words(layer: LivingLayer | None, shown: tuple[str, ...]) -> str:
@@ -86,3 +68,8 @@ def words(layer: LivingLayer | None, shown: tuple[str, ...]) -> str:
     if "daylight" in shown or layer.daylight != 1.0:
         parts.append(f"daylight {layer.daylight:.2f}")
     return f"Here now: {', '.join(parts)}." if parts else "A script is carried out here."
+
+
+def tags(places: tuple[TaggedPlace, ...]) -> Content:
+    """The places that people have named, in the order in which they did."""
+    return Content({"tags": [place.name for place in places]})

@@ -1,6 +1,5 @@
-"""Every browser's camera: where it looks, its flights from view to view, and its framing when the window changes shape.
-
-A camera that goes with the robot. It keeps the direction and distance that the hand gave it, and rests while that moves it.
+"""Every browser's camera: where it looks, its flights from view to view, its way with the robot, and its framing when the window
+changes shape.
 """
 
 from __future__ import annotations
@@ -19,73 +18,11 @@ from numpy.typing import ArrayLike, NDArray
 from web.viewer.camera_views import FAR, NEAR, PHONE_ASPECT, Camera, Flight, View, camera_for
 
 Point = NDArray[np.float64]  # (3,)
-
-ELEVATION_DEG, FOV_DEG = 52.0, 30.0
-NEAR_M, LEAST, MOST = 6.0, 1.4, 4.2  # half the width that is seen: metres, but between so many plate units
-EASE_S = 0.4  # how long the camera lags behind
-REST_S = 0.6  # after the hand has moved it
-MOVED = 0.01  # a share of the distance: a camera whose direction differs by more was moved by hand
-STEP = 0.004  # plate units: smaller steps are not sent
-
-
-def follow_camera(at: Point, scale: float, aspect: float) -> Camera:
-    """Where a camera begins to follow. scale: plate units a metre; aspect: width over height of the canvas."""
-    half_width = min(max(NEAR_M * scale, LEAST), MOST)
-    half, up = math.tan(math.radians(FOV_DEG) / 2), math.radians(ELEVATION_DEG)
-    distance = half_width / (half * _counted(aspect))
-    return Camera(at + distance * np.array([0.0, -math.cos(up), math.sin(up)]), at.copy(), math.radians(FOV_DEG))
-
-
-def _counted(aspect: float) -> float:
-    """A canvas that is wider than this shows more at the sides, not less in height."""
-    return min(max(aspect, 0.5), 1.6)
-
-
-@dataclass
-class Follower:
-    """One camera that follows on one plate."""
-
-    plate: str  # "office" or "map"
-    at: Point  # where it looks
-    offset: Point  # from there to the camera
-    fov_rad: float
-    last_s: float
-    rests_until_s: float = -math.inf
-
-    def reshaped(self, before: float, aspect: float) -> Camera:
-        """Where the camera should be now that the canvas has another aspect: as much is seen from side to side."""
-        self.offset = self.offset * (_counted(before) / _counted(aspect))
-        return Camera(self.at + self.offset, self.at, self.fov_rad)
-
-    def heard(self, position: Point, look_at: Point, now_s: float) -> None:
-        """The browser reports its camera. If it is turned or nearer than we put it, that was the hand, which is obeyed."""
-        offset = position - look_at
-        if np.linalg.norm(offset - self.offset) > MOVED * np.linalg.norm(self.offset):
-            self.offset, self.rests_until_s = offset, now_s + REST_S
-
-    def step(self, robot: Point, now_s: float) -> Camera | None:
-        """Where the camera should be now; None: it stays."""
-        dt, self.last_s = min(max(now_s - self.last_s, 0.0), 0.5), now_s
-        if now_s < self.rests_until_s:
-            return None
-        towards = (robot - self.at) * (1 - math.exp(-dt / EASE_S))
-        if np.linalg.norm(robot - self.at) < STEP:
-            return None
-        self.at = self.at + towards
-        return Camera(self.at + self.offset, self.at, self.fov_rad)
-
-
 Robots = dict[str, tuple[Point, float]]  # by plate: where the robot stands in the scene, and plate units a metre
 SCREEN_ASPECT = 1.5
 RESHAPED = 0.01  # a larger change of aspect needs another framing
 WIDER_RAD = 1e-3  # another field of view
 TURNED = 0.02  # a camera farther from its view than this has been turned by hand
-
-
-def aspect_of(camera: viser.CameraHandle) -> float:
-    """Width over height of the canvas. A canvas without pixels, as in a browser that hides it, counts as a screen's."""
-    width, height = camera.image_width, camera.image_height
-    return width / height if width > 0 and height > 0 else SCREEN_ASPECT
 
 
 class Cameras:
@@ -112,14 +49,14 @@ class Cameras:
         viser's client goes to its initial camera when it has drawn its first frame, which may be after our first
         message. A camera that is found there, and should not be, is sent on once more.
         """
-        aspect = aspect_of(client.camera)
+        aspect = _aspect_of(client.camera)
         self.take_off(client.client_id, "map" if aspect < PHONE_ASPECT else "all")
 
         async def moved(camera: viser.CameraHandle) -> None:
             nonlocal aspect
             self._heard(client.client_id, camera)
-            if abs(aspect_of(camera) / aspect - 1) > RESHAPED:
-                before, aspect = aspect, aspect_of(camera)
+            if abs(_aspect_of(camera) / aspect - 1) > RESHAPED:
+                before, aspect = aspect, _aspect_of(camera)
                 self._post(partial(self._reshaped, client, before, aspect))
             elif self._set_back(client.client_id, camera):
                 self._post(lambda: self._send_on(client.client_id))
@@ -180,7 +117,7 @@ class Cameras:
                 self._flights[client.client_id] = flight
 
     def _framed(self, view: View, camera: viser.CameraHandle) -> Camera:
-        return camera_for(view, aspect_of(camera), self._office, self._two)
+        return camera_for(view, _aspect_of(camera), self._office, self._two)
 
     def follow(self, client_id: int, robots: Robots, now_s: float) -> None:
         """From now on this browser's camera goes with the robot, on the map if it looks at the map, else in the office. With no
@@ -191,7 +128,7 @@ class Cameras:
         if client is None or plate not in robots:
             return
         at, scale = robots[plate]
-        end = follow_camera(at, scale, aspect_of(client.camera))
+        end = follow_camera(at, scale, _aspect_of(client.camera))
         self._flights[client_id] = Flight(_standing(client.camera), end, now_s)
         self._ends[client_id] = end
         self._followers[client_id] = Follower(plate, at, end.position - at, end.fov_rad, now_s)
@@ -244,6 +181,12 @@ class Cameras:
                 del self._flights[client_id]
 
 
+def _aspect_of(camera: viser.CameraHandle) -> float:
+    """Width over height of the canvas. A canvas without pixels, as in a browser that hides it, counts as a screen's."""
+    width, height = camera.image_width, camera.image_height
+    return width / height if width > 0 and height > 0 else SCREEN_ASPECT
+
+
 def _near(camera: viser.CameraHandle | Camera, position: ArrayLike, look_at: ArrayLike) -> bool:
     return np.allclose(camera.position, position, atol=TURNED) and np.allclose(camera.look_at, look_at, atol=TURNED)
 
@@ -258,3 +201,59 @@ def _point(client: viser.ClientHandle, camera: Camera) -> None:
         client.camera.look_at = camera.look_at
         client.camera.up_direction = (0.0, 0.0, 1.0)
         client.camera.fov = camera.fov_rad
+
+
+ELEVATION_DEG, FOV_DEG = 52.0, 30.0
+NEAR_M, LEAST, MOST = 6.0, 1.4, 4.2  # half the width that is seen: metres, but between so many plate units
+EASE_S = 0.4  # how long the camera lags behind
+REST_S = 0.6  # after the hand has moved it
+MOVED = 0.01  # a share of the distance: a camera whose direction differs by more was moved by hand
+STEP = 0.004  # plate units: smaller steps are not sent
+
+
+@dataclass
+class Follower:
+    """One camera that goes with the robot on one plate. It keeps the direction and distance that the hand gave it, and rests
+    while that moves it."""
+
+    plate: str  # "office" or "map"
+    at: Point  # where it looks
+    offset: Point  # from there to the camera
+    fov_rad: float
+    last_s: float
+    rests_until_s: float = -math.inf
+
+    def reshaped(self, before: float, aspect: float) -> Camera:
+        """Where the camera should be now that the canvas has another aspect: as much is seen from side to side."""
+        self.offset = self.offset * (_counted(before) / _counted(aspect))
+        return Camera(self.at + self.offset, self.at, self.fov_rad)
+
+    def heard(self, position: Point, look_at: Point, now_s: float) -> None:
+        """The browser reports its camera. If it is turned or nearer than we put it, that was the hand, which is obeyed."""
+        offset = position - look_at
+        if np.linalg.norm(offset - self.offset) > MOVED * np.linalg.norm(self.offset):
+            self.offset, self.rests_until_s = offset, now_s + REST_S
+
+    def step(self, robot: Point, now_s: float) -> Camera | None:
+        """Where the camera should be now; None: it stays."""
+        dt, self.last_s = min(max(now_s - self.last_s, 0.0), 0.5), now_s
+        if now_s < self.rests_until_s:
+            return None
+        towards = (robot - self.at) * (1 - math.exp(-dt / EASE_S))
+        if np.linalg.norm(robot - self.at) < STEP:
+            return None
+        self.at = self.at + towards
+        return Camera(self.at + self.offset, self.at, self.fov_rad)
+
+
+def follow_camera(at: Point, scale: float, aspect: float) -> Camera:
+    """Where a camera begins to follow. scale: plate units a metre; aspect: width over height of the canvas."""
+    half_width = min(max(NEAR_M * scale, LEAST), MOST)
+    half, up = math.tan(math.radians(FOV_DEG) / 2), math.radians(ELEVATION_DEG)
+    distance = half_width / (half * _counted(aspect))
+    return Camera(at + distance * np.array([0.0, -math.cos(up), math.sin(up)]), at.copy(), math.radians(FOV_DEG))
+
+
+def _counted(aspect: float) -> float:
+    """A canvas that is wider than this shows more at the sides, not less in height."""
+    return min(max(aspect, 0.5), 1.6)

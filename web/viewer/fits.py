@@ -1,14 +1,7 @@
-"""Poses and points of one frame in another: of the map in the office and back, and on the map's plate.
+"""Where things lie: poses and points of one frame in another, of the office, the map and the pose cells on their plates; and what
+the switches show and lay over them at a moment, on the stage and in pictures alike.
 
-Converts between the office frame (metres) and the office plate: any world, scaled to fit 10 x 8 m.
-
-Converts between the map frame and the map plate: turned like the office (for the eye only) and scaled in steps.
-
-Converts between pose cells [theta, y, x] and the glass box on their plate: a torus unrolled into 7 x 7 x 4.6.
-
-What people alone know of a moment, as far as its switches show it, and where it lies: on the stage and in pictures alike.
-
-What the switches lay over the plates at a moment, and what is inspected: on the stage and in pictures alike.
+Frames are in metres and radians, but the pose cells' in cells [theta, y, x]; plates are in units of their own.
 """
 
 from __future__ import annotations
@@ -36,14 +29,16 @@ from web.messages import (
 )
 from web.switches import Name
 
+Array = NDArray[np.float64]
 
-def placed(points: NDArray[np.float64], frame: Pose) -> NDArray[np.float64]:
+
+def placed(points: Array, frame: Pose) -> Array:
     """(n, 2) points of a frame, in the frame in which that lies."""
     c, s = math.cos(frame.heading_rad), math.sin(frame.heading_rad)
     return points @ np.array([[c, s], [-s, c]]) + (frame.x, frame.y)
 
 
-def into_map(points: NDArray[np.float64], map_in_office: Pose) -> NDArray[np.float64]:
+def into_map(points: Array, map_in_office: Pose) -> Array:
     """From (n, 2) in the office to the map: the inverse of `placed`."""
     c, s = math.cos(map_in_office.heading_rad), math.sin(map_in_office.heading_rad)
     return (points - (map_in_office.x, map_in_office.y)) @ np.array([[c, -s], [s, c]])
@@ -66,6 +61,8 @@ METRE_HIGH = 0.62 / 2.5  # plate units per metre of height, for everything but w
 
 
 class OfficeFit:
+    """Between the office frame and the office plate: any world, scaled to fit 10 x 8 m."""
+
     def __init__(self, bounds: tuple[float, float, float, float]) -> None:
         low_x, low_y, high_x, high_y = bounds
         self.size_m = (max(high_x - low_x, 1e-3), max(high_y - low_y, 1e-3))
@@ -76,11 +73,11 @@ class OfficeFit:
         self.grid_step_m = 1.0 if self.scale > 0.35 else 5.0  # between the lines of the floor
         self._centre = self.low + np.array(self.size_m) / 2
 
-    def to_plate(self, xy: NDArray[np.floating]) -> NDArray[np.float64]:
+    def to_plate(self, xy: NDArray[np.floating]) -> Array:
         """From (n, 2) metres in the office to (n, 2) on the plate."""
         return (np.asarray(xy, np.float64) - self._centre) * self.scale
 
-    def to_office(self, xy: NDArray[np.floating]) -> NDArray[np.float64]:
+    def to_office(self, xy: NDArray[np.floating]) -> Array:
         """The inverse of `to_plate`."""
         return np.asarray(xy, np.float64) / self.scale + self._centre
 
@@ -93,17 +90,18 @@ GRID = 0.25  # the centre moves in steps of this size, in plate units
 
 @dataclass(frozen=True)
 class MapFit:
-    """plate = scale * turn(map - centre)."""
+    """Between the map frame and the map plate, turned like the office (for the eye only) and scaled in steps:
+    plate = scale * turn(map - centre)."""
 
     scale: float = LARGEST
     turn_rad: float = 0.0
     centre: tuple[float, float] = (0.0, 0.0)
 
-    def to_plate(self, xy: NDArray[np.floating]) -> NDArray[np.float64]:
+    def to_plate(self, xy: NDArray[np.floating]) -> Array:
         """From (n, 2) metres in the map to (n, 2) on the plate."""
         return (np.asarray(xy, np.float64).reshape(-1, 2) - self.centre) @ _turned(self.turn_rad).T * self.scale
 
-    def to_map(self, xy: NDArray[np.floating]) -> NDArray[np.float64]:
+    def to_map(self, xy: NDArray[np.floating]) -> Array:
         """The inverse of `to_plate`."""
         return np.asarray(xy, np.float64).reshape(-1, 2) / self.scale @ _turned(self.turn_rad) + self.centre
 
@@ -115,8 +113,8 @@ def refit(fit: MapFit, xy: NDArray[np.floating], turn_rad: float) -> MapFit:
     if fit.turn_rad == turn_rad and _suits(fit, xy):
         return fit
     turned = np.asarray(xy, np.float64) @ _turned(turn_rad).T
-    low: NDArray[np.float64] = turned.min(0)
-    high: NDArray[np.float64] = turned.max(0)
+    low: Array = turned.min(0)
+    high: Array = turned.max(0)
     size = np.maximum(high - low, 1e-6)
     largest = min((WIDTH - 2 * ROOM) / size[0], (DEPTH - 2 * ROOM) / size[1])
     scale = min(LARGEST, STEP ** math.floor(math.log(largest) / math.log(STEP)))
@@ -135,17 +133,17 @@ def _suits(fit: MapFit, xy: NDArray[np.floating]) -> bool:
     return not (small and larger[0] < WIDTH - 2 * ROOM and larger[1] < DEPTH - 2 * ROOM)
 
 
-def _turned(angle_rad: float) -> NDArray[np.float64]:
+def _turned(angle_rad: float) -> Array:
     c, s = math.cos(angle_rad), math.sin(angle_rad)
     return np.array([[c, -s], [s, c]])
 
 
 SIDE, HEIGHT = 7.0, 4.6
-Array = NDArray[np.float64]
 
 
 class CellFit:
-    """`shape` is (n_theta, n_y, n_x); x' and y' start at the box's left front corner, theta' at its floor."""
+    """From pose cells to the glass box on their plate: a torus unrolled into 7 x 7 x 4.6. `shape` is (n_theta, n_y, n_x); x' and
+    y' start at the box's left front corner, theta' at its floor."""
 
     def __init__(self, shape: tuple[int, int, int]) -> None:
         self.shape = shape
@@ -174,11 +172,8 @@ def broken_where_it_wraps(points: Array) -> NDArray[np.float32]:
     return segments[~jumps.any(1)].astype(np.float32)
 
 
-Points = NDArray[np.float64]
-
-
 class Judged(NamedTuple):
-    """None, and no closures: it is switched off, or nobody knows it."""
+    """What people alone know of a moment. None, and no closures: it is switched off, or nobody knows it."""
 
     walls_of: WorldDrawing | None  # its true walls lie under the map
     ghost: Ghost | None
@@ -199,7 +194,7 @@ def judged(snapshot: Snapshot, on: Collection[Name]) -> Judged:
     )
 
 
-def walls_in_map(world: WorldDrawing, frame: Pose) -> Points:
+def walls_in_map(world: WorldDrawing, frame: Pose) -> Array:
     """(n, 4) the true walls in the map, laid there by the fit after which its error is measured."""
     return into_map(np.asarray(world.walls, np.float64).reshape(-1, 2), frame).reshape(-1, 4)
 
@@ -210,20 +205,20 @@ def wheels_alone(ghost: Ghost, truth: Pose) -> tuple[Pose, Pose, float]:
     return office, compose(ghost.map_start, ghost.pose), math.hypot(office.x - truth.x, office.y - truth.y)
 
 
-def wheels_path(ghost: Ghost) -> tuple[Points, Points]:
+def wheels_path(ghost: Ghost) -> tuple[Array, Array]:
     """(n, 2) the way there in the office and in the map."""
     path = np.asarray(ghost.path, np.float64).reshape(-1, 2)
     return placed(path, ghost.office_start), placed(path, ghost.map_start)
 
 
-def error_line(estimate: Pose, truth: Pose, frame: Pose) -> tuple[Points, float]:
+def error_line(estimate: Pose, truth: Pose, frame: Pose) -> tuple[Array, float]:
     """(2, 2) from the estimate to the true place in the map, and its length, m."""
     line = np.vstack([(estimate.x, estimate.y), into_map(np.array([[truth.x, truth.y]]), frame)])
     return line, float(np.hypot(*(line[1] - line[0])))
 
 
 class Overlaid(NamedTuple):
-    """None: it is switched off, or there is none."""
+    """What lies over the plates, and what is inspected. None: it is switched off, or there is none."""
 
     occupancy: OccupancyLayer | None  # below the map
     beneath: OccupancyLayer | None  # the same below the pose cells

@@ -1,7 +1,4 @@
-"""What a viewer draws, layer by layer: each is offered what is new of a snapshot, and takes it as often as it needs to.
-
-Draws what the sonars met in a thread of its own, since that may take longer than a frame.
-"""
+"""What a viewer draws, layer by layer: each is offered what is new of a snapshot, and takes it as often as it needs to."""
 
 from __future__ import annotations
 
@@ -19,37 +16,6 @@ from web.viewer.pointer import Pointer
 from web.viewer.replay import Replay
 from web.viewer.scenery import Scenery
 
-
-class OccupancyArtist:
-    """`post` brings what is drawn back to the viewer's thread."""
-
-    def __init__(self, plate: MapPlate, switches: Switches, post: Callable[[Callable[[], None]], None]) -> None:
-        self._plate, self._switches, self._post = plate, switches, post
-        self._artist = ThreadPoolExecutor(1, "artist")
-        self.drawing = False
-
-    def draw(self, layer: OccupancyLayer | None) -> None:
-        """If the switch is off by the time the picture is done, it is dropped."""
-        if layer is None:
-            self._plate.set_occupancy(None)
-            return
-        self.drawing = True
-
-        def drawn(future: Future[OccupancyPicture]) -> None:
-            if not future.cancelled():
-                self._post(lambda: self._lay(future))
-
-        self._artist.submit(layer.draw_map).add_done_callback(drawn)
-
-    def stop(self) -> None:
-        self._artist.shutdown(cancel_futures=True)
-
-    def _lay(self, future: Future[OccupancyPicture]) -> None:
-        self.drawing = False
-        if self._switches.is_on("occupancy"):
-            self._plate.set_occupancy(future.result())
-
-
 ON_MAP = "times", "estimate", "others", "goal", "tags", "places", "closures"  # layers that move with it
 
 
@@ -57,15 +23,9 @@ class Layers:
     """All of one viewer. To be used in its thread only."""
 
     def __init__(
-        self,
-        scenery: Scenery,
-        beside: Beside,
-        judged: JudgedLayers,
-        replay: Replay,
-        pointer: Pointer,
-        switches: Switches,
-        post: Callable[[Callable[[], None]], None],
-    ) -> None:
+        self, scenery: Scenery, beside: Beside, judged: JudgedLayers, replay: Replay, pointer: Pointer,
+        switches: Switches, post: Callable[[Callable[[], None]], None],
+    ) -> None:  # fmt: skip
         """post: has something done in the viewer's thread."""
         self._scenery, self._beside, self._judged, self._replay = scenery, beside, judged, replay
         self._pointer, self._switches = pointer, switches
@@ -176,3 +136,34 @@ class Layers:
         offer["way"].offer(now_s, cells, laid.goal_memory)
         if not self._artist.drawing:
             offer["occupancy"].offer(now_s, laid.occupancy)
+
+
+class OccupancyArtist:
+    """Draws what the sonars met in a thread of its own, since that may take longer than a frame. `post` brings it back to the
+    viewer's thread."""
+
+    def __init__(self, plate: MapPlate, switches: Switches, post: Callable[[Callable[[], None]], None]) -> None:
+        self._plate, self._switches, self._post = plate, switches, post
+        self._artist = ThreadPoolExecutor(1, "artist")
+        self.drawing = False
+
+    def draw(self, layer: OccupancyLayer | None) -> None:
+        """If the switch is off by the time the picture is done, it is dropped."""
+        if layer is None:
+            self._plate.set_occupancy(None)
+            return
+        self.drawing = True
+
+        def drawn(future: Future[OccupancyPicture]) -> None:
+            if not future.cancelled():
+                self._post(lambda: self._lay(future))
+
+        self._artist.submit(layer.draw_map).add_done_callback(drawn)
+
+    def stop(self) -> None:
+        self._artist.shutdown(cancel_futures=True)
+
+    def _lay(self, future: Future[OccupancyPicture]) -> None:
+        self.drawing = False
+        if self._switches.is_on("occupancy"):
+            self._plate.set_occupancy(future.result())

@@ -1,9 +1,7 @@
-"""A viewer in one look: one viser server on the loopback, and one thread that draws snapshots and handles the pointer.
+"""The viewers: for each look one viser server on the loopback, and one thread that draws snapshots and handles the pointer.
 
-viser's callbacks only post to `_inbox`; everything that touches handles happens in that one thread.
-
-A viewer for each look, so that every page is shown its own: two themes, each also with large letters for those who present.
-All but the first are built when they are first needed.
+viser's callbacks only post to `_inbox`; everything that touches handles happens in that one thread. Every page is shown its own
+look: two themes, each also with large letters for those who present. All but the first are built when they are first needed.
 """
 
 from __future__ import annotations
@@ -41,16 +39,12 @@ ARTIST_S = 0.005  # that what another thread has drawn waits
 
 
 class Viewer:
-    """Draws what `latest` holds and hands commands to `submit`, which must return at once."""
+    """Draws what `latest` holds in one look, and hands commands to `submit`, which must return at once."""
 
     def __init__(
-        self,
-        latest: Latest[Snapshot],
-        submit: Callable[[Command], Future[Accepted | Refused]],
-        switches: Switches,
-        theme: Theme = "dark",
-        large: bool = False,
-    ) -> None:
+        self, latest: Latest[Snapshot], submit: Callable[[Command], Future[Accepted | Refused]], switches: Switches,
+        theme: Theme = "dark", large: bool = False,
+    ) -> None:  # fmt: skip
         self.on_connect: Callable[[int], None] | None = None
         self.on_complaint: Callable[[int, str], None] | None = None
         self._latest, self._submit, self._switches = latest, submit, switches
@@ -64,9 +58,8 @@ class Viewer:
         self._pointer = Pointer(self._send, self._complain)
         self._now_s = 0.0
         self._set_up(palette_of(theme, large))
-        self._listen()
-
-    # ------------------------------------------------------------ from any thread
+        self.server.on_client_connect(self._connected)
+        self.server.on_client_disconnect(self._disconnected)
 
     def start(self) -> None:
         self._thread = threading.Thread(target=self._work, name="viewer", daemon=True)
@@ -129,8 +122,6 @@ class Viewer:
         """Somebody is dragging the robot."""
         self._inbox.put(lambda: self._drag(drag))
 
-    # ------------------------------------------------------------ the thread
-
     def _work(self) -> None:
         seen = 0
         while not self._stopping.is_set():
@@ -163,8 +154,6 @@ class Viewer:
         assert self._snapshot is not None
         self._cameras.give_room(office=self._snapshot.world is not None, two=two)
 
-    # ------------------------------------------------------------ setting up
-
     def _set_up(self, palette: Palette) -> None:
         """Builds the plates in a palette."""
         self._scenery = Scenery(self.server.scene, palette)
@@ -180,12 +169,6 @@ class Viewer:
             part.on_drag("left")(self._dragged(False))
             part.on_drag("left", modifier="shift")(self._dragged(True))
 
-    def _listen(self) -> None:
-        self.server.on_client_connect(self._connected)
-        self.server.on_client_disconnect(self._disconnected)
-
-    # ------------------------------------------------------------ callbacks of viser: post, never draw
-
     def _dragged(self, turning: bool) -> Callable[[DragEvent], Coroutine[Any, Any, None]]:
         async def dragged(event: DragEvent) -> None:  # async: keeps their order
             x, y, z = event.client.camera.position.tolist()
@@ -198,8 +181,6 @@ class Viewer:
 
     def _disconnected(self, client: viser.ClientHandle) -> None:
         self._inbox.put(lambda: self._cameras.farewell(client.client_id))
-
-    # ------------------------------------------------------------ in the thread
 
     def _click(self, click: Click, inspecting: bool) -> None:
         lesson = None if self._snapshot is None or inspecting else self._snapshot.lesson

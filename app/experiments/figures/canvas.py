@@ -1,7 +1,10 @@
-"""A figure as files. The same figure is the same SVG, byte for byte: no date, no version, one salt for its ids.
+"""What all figures share: one style, the colours, and how they become files.
 
-The colours that all figures share.
+The same figure is the same SVG, byte for byte: no date, no version, one salt for its ids.
 """
+
+# matplotlib tells the types of its own functions in part only.
+# pyright: reportUnknownMemberType=false, reportUnknownVariableType=false, reportUnknownArgumentType=false
 
 from __future__ import annotations
 
@@ -32,11 +35,6 @@ THEMED = {
     INK: "ink", SOFT: "soft", WALL: "wall", FAINT: "faint", PAPER: "paper", BLACK: "ink",
     BLUE: "blue", VERMILION: "vermilion", GREEN: "green", PURPLE: "purple", ORANGE: "orange", SKY: "sky",
 }  # fmt: skip
-
-
-# matplotlib tells the types of its own functions in part only.
-# pyright: reportUnknownMemberType=false, reportUnknownVariableType=false, reportUnknownArgumentType=false
-
 
 _STYLE = Path(__file__).with_name("ratslam.mplstyle")
 WIDTH_IN = 7.2  # of a page's column

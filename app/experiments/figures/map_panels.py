@@ -1,9 +1,8 @@
-"""One panel of a map, each kind a function: it draws a trace on axes in metres of the office, or in pose cells.
+"""One panel of a map, each kind a function: it draws a trace on axes in metres of the office, or in pose cells."""
 
-The goal memory's temporal map over the pose cells, and its plateaus. IROS 2005 V.D, figure 9 and point C.
-
-The arcs among which a robot on a route chose at one moment, and the one that it drove. ACRA 2006 4.3, figure 4.
-"""
+# matplotlib and SciPy tell the types of their own functions in part only.
+# pyright: reportUnknownMemberType=false, reportUnknownVariableType=false, reportUnknownArgumentType=false
+# pyright: reportMissingTypeStubs=false
 
 from __future__ import annotations
 
@@ -35,18 +34,19 @@ from app.experiments.figures.canvas import (
 from app.trials.figure_options import Maps
 from app.trials.trace import APART_M, Grid, Movements, Trace
 
-# matplotlib tells the types of its own functions in part only.
-# pyright: reportUnknownMemberType=false, reportUnknownVariableType=false, reportUnknownArgumentType=false
-
-
 _Array = NDArray[np.float64]
 MARGIN_M = 0.4
 MANY_LINKS = 6000  # more are drawn as a picture
 FEW_SNAPS = 12  # so many are lettered
+ROUND_M = 1.2  # of the plan, on each side of the robot
+LEAD = 0.1  # of the longest time: two ways whose times differ by less take the same time
+BELOW = 0.05  # of the longest time: what is no lower than this under the highest time around is at the watershed
+LEAST_CELLS = 4  # fewer are no plateau: they have room for no robot
+TOGETHER = 3  # cells; groups that are nearer have one ring
 _FREE, _TAKEN = to_rgb(SKY), to_rgb(SOFT)
 
 
-def plan(panel: Axes, trace: Trace) -> None:
+def _plan(panel: Axes, trace: Trace) -> None:
     """Walls and boxes; the panel is as large as the office."""
     panel.add_collection(
         LineCollection(list(trace.plan.walls.reshape(-1, 2, 2)), colors=WALL, linewidths=0.8, zorder=1)
@@ -57,14 +57,14 @@ def plan(panel: Axes, trace: Trace) -> None:
     panel.update_datalim([(x1, y1), (x2, y2)])
 
 
-def goals(panel: Axes, trace: Trace) -> None:
+def _goals(panel: Axes, trace: Trace) -> None:
     """A star where a goal truly is, a ring where the map has put the experience that was tagged there, and who was reached."""
     reached = {visit.name: visit.reached for visit in trace.visits}
     for goal in trace.goals:
         ok = reached.get(goal.name)
         colour = INK if ok is None else GREEN if ok else ORANGE
-        label = "goal" if ok is None else "goal, reached" if ok else "goal, not reached"
-        panel.plot(goal.x, goal.y, "*", ms=8, mfc=colour, mec="white", mew=0.4, ls="none", zorder=6, label=label)
+        words = "goal" if ok is None else "goal, reached" if ok else "goal, not reached"
+        panel.plot(goal.x, goal.y, "*", ms=8, mfc=colour, mec="white", mew=0.4, ls="none", zorder=6, label=words)
         if goal.experience is not None:
             x, y, _ = trace.map.poses[goal.experience]
             panel.plot([goal.x, x], [goal.y, y], "-", color=colour, lw=0.6, zorder=5)
@@ -73,36 +73,36 @@ def goals(panel: Axes, trace: Trace) -> None:
             )
 
 
-def _links(panel: Axes, trace: Trace, colour: str, width: float = 0.7) -> None:
+def _links(panel: Axes, trace: Trace, colour: str) -> None:
     """One line with gaps, since a file with a path for each link would be ten times as large."""
     ends = trace.map.poses[trace.map.links, :2]
     gaps = np.full((len(ends), 1, 2), np.nan)
     line = np.concatenate([ends, gaps], axis=1).reshape(-1, 2)
-    panel.plot(*line.T, color=colour, lw=width, zorder=2, rasterized=len(ends) > MANY_LINKS)
+    panel.plot(*line.T, color=colour, lw=0.7, zorder=2, rasterized=len(ends) > MANY_LINKS)
 
 
 def experience_map(panel: Axes, trace: Trace, options: Maps) -> None:
-    plan(panel, trace)
+    _plan(panel, trace)
     colour = ENGINE_COLOUR[trace.trial.engine]
     _links(panel, trace, colour)
     panel.plot(*trace.map.poses[:, :2].T, ".", ms=1.8, color=colour, zorder=3)
     if options.marks:
-        goals(panel, trace)
+        _goals(panel, trace)
 
 
 def paths(panel: Axes, trace: Trace, options: Maps) -> None:
-    plan(panel, trace)
+    _plan(panel, trace)
     panel.plot(*trace.odometry_path.T, color=ORANGE, lw=0.7, zorder=2, label="odometry alone")
     panel.plot(*trace.true_path.T, color=INK, lw=1.4, zorder=3, label="truth")
-    sent = on_the_way(trace)
+    sent = _on_the_way(trace)
     if np.isfinite(sent).any():
         panel.plot(*sent.T, color=VERMILION, lw=1.4, zorder=3, label="truth, sent to a goal")
     panel.plot(*trace.mapped_path.T, color=BLUE, lw=0.7, zorder=4, label="as the map tells it")
     if options.marks:
-        goals(panel, trace)
+        _goals(panel, trace)
 
 
-def on_the_way(trace: Trace) -> _Array:
+def _on_the_way(trace: Trace) -> _Array:
     """(n, 2): where the robot truly was in each row; NaN while it was not sent to a goal."""
     sent = np.zeros(len(trace.time_s), bool)
     for visit in trace.visits:
@@ -110,10 +110,7 @@ def on_the_way(trace: Trace) -> _Array:
     return np.where(sent[:, None], trace.truth[:, :2], np.nan)
 
 
-# ------------------------------------------------------------ in pose cells
-
-
-def cells_frame(panel: Axes, trace: Trace) -> None:
+def _cells_frame(panel: Axes, trace: Trace) -> None:
     _, n_y, n_x = trace.cells_shape
     panel.set(
         xlim=(-0.5, n_x - 0.5),
@@ -125,7 +122,7 @@ def cells_frame(panel: Axes, trace: Trace) -> None:
 
 def pose_cells(panel: Axes, trace: Trace, options: Maps) -> None:
     """The line is broken where the packet leaves through one face and comes in through the other, and where it snaps."""
-    cells_frame(panel, trace)
+    _cells_frame(panel, trace)
     path = broken_path(trace)
     panel.plot(*path.T, color=ENGINE_COLOUR[trace.trial.engine], lw=0.8, zorder=3)
     before, after = _in_faces(trace.snaps[:, 1:3], trace), _in_faces(trace.snaps[:, 4:6], trace)
@@ -155,28 +152,25 @@ def _in_faces(points: _Array, trace: Trace) -> _Array:
     return (points + 0.5) % (n_x, n_y) - 0.5
 
 
-# ------------------------------------------------------------ pictures
-
-
 def map_grid(panel: Axes, trace: Trace, options: Maps) -> None:
-    plan(panel, trace)
+    _plan(panel, trace)
     grid = trace.map.occupancy
     if grid is None:
         return
     frame = trace.map.in_office
     turn = Affine2D().rotate(frame.heading_rad).translate(frame.x, frame.y)
     limits = panel.get_xlim(), panel.get_ylim()
-    panel.imshow(_tinted(grid), origin="lower", extent=extent(grid), transform=turn + panel.transData, zorder=0)
+    panel.imshow(_tinted(grid), origin="lower", extent=_extent(grid), transform=turn + panel.transData, zorder=0)
     panel.set(xlim=limits[0], ylim=limits[1], aspect="equal")
     if options.marks:
-        goals(panel, trace)
+        _goals(panel, trace)
 
 
 def occupancy(panel: Axes, trace: Trace, options: Maps) -> None:  # noqa: ARG001
     grid = trace.map.cells_occupancy
     if grid is not None:
-        panel.imshow(_tinted(grid), origin="lower", extent=extent(grid), zorder=0)
-    cells_frame(panel, trace)
+        panel.imshow(_tinted(grid), origin="lower", extent=_extent(grid), zorder=0)
+    _cells_frame(panel, trace)
 
 
 def _tinted(grid: Grid) -> _Array:
@@ -186,24 +180,24 @@ def _tinted(grid: Grid) -> _Array:
     return np.dstack([colour, np.abs(sure) * np.where(sure > 0, 1.0, 0.45)])
 
 
-def extent(grid: Grid) -> tuple[float, float, float, float]:
+def _extent(grid: Grid) -> tuple[float, float, float, float]:
     (x, y), half = grid.origin, grid.cell / 2
     n_y, n_x = grid.values.shape
     return x - half, x + n_x * grid.cell - half, y - half, y + n_y * grid.cell - half
 
 
 def temporal_map(panel: Axes, trace: Trace, options: Maps) -> None:
-    plan(panel, trace)
+    _plan(panel, trace)
     _links(panel, trace, FAINT)
     known = np.isfinite(trace.map.times_s)
     x, y, _ = trace.map.poses[known].T
     drawn = panel.scatter(x, y, c=trace.map.times_s[known], s=7, cmap="viridis_r", linewidths=0, zorder=3)
-    seconds(panel, drawn)
+    _seconds(panel, drawn)
     if options.marks:
-        goals(panel, trace)
+        _goals(panel, trace)
 
 
-def seconds(panel: Axes, drawn: object) -> None:
+def _seconds(panel: Axes, drawn: object) -> None:
     figure = panel.get_figure(root=True)
     assert figure is not None
     bar = figure.colorbar(drawn, ax=panel, shrink=0.7, pad=0.02, aspect=25)  # type: ignore[arg-type]
@@ -212,7 +206,7 @@ def seconds(panel: Axes, drawn: object) -> None:
 
 
 def representations(panel: Axes, trace: Trace, options: Maps) -> None:
-    plan(panel, trace)
+    _plan(panel, trace)
     _links(panel, trace, FAINT)
     panel.plot(*trace.map.poses[:, :2].T, ".", ms=1.2, color=WALL, zorder=3)
     groups = (
@@ -227,29 +221,19 @@ def representations(panel: Axes, trace: Trace, options: Maps) -> None:
     panel.set_xlabel(f"{len(trace.map.multiple)} multiple, {len(trace.map.collisions)} collisions", color=SOFT)
 
 
-# matplotlib and SciPy tell the types of their own functions in part only.
-# pyright: reportUnknownMemberType=false, reportUnknownVariableType=false, reportUnknownArgumentType=false
-# pyright: reportMissingTypeStubs=false
-
-
-LEAD = 0.1  # of the longest time: two ways whose times differ by less take the same time
-BELOW = 0.05  # of the longest time: what is no lower than this under the highest time around is at the watershed
-LEAST_CELLS = 4  # fewer are no plateau: they have room for no robot
-TOGETHER = 3  # cells; groups that are nearer have one ring
-
-
 def goal_memory(panel: Axes, trace: Trace, options: Maps) -> None:  # noqa: ARG001
+    """The goal memory's temporal map over the pose cells, and its plateaus. IROS 2005 V.D, figure 9 and point C."""
     times, lead = trace.map.goal_times, trace.map.goal_lead
     if times is not None and lead is not None:
         drawn = panel.imshow(
-            np.ma.masked_invalid(times.values), origin="lower", extent=extent(times), cmap="viridis_r", zorder=0
+            np.ma.masked_invalid(times.values), origin="lower", extent=_extent(times), cmap="viridis_r", zorder=0
         )
-        seconds(panel, drawn)
+        _seconds(panel, drawn)
         _rings(panel, plateau(times.values, lead.values, APART_M / trace.cell_m))
-    cells_frame(panel, trace)
+    _cells_frame(panel, trace)
 
 
-def plateau(times_s: NDArray[np.float64], lead_s: NDArray[np.float64], apart: float) -> NDArray[np.bool_]:
+def plateau(times_s: _Array, lead_s: _Array, apart: float) -> NDArray[np.bool_]:
     """The cells from which two ways take the same time and around which none within `apart` cells takes longer. (n_y, n_x).
 
     Since times grow from the goal on both ways round until they meet, a plateau is where they are highest. Elsewhere
@@ -279,16 +263,12 @@ def _rings(panel: Axes, cells: NDArray[np.bool_]) -> None:
                    label="plateau: both ways take the same time")  # fmt: skip
 
 
-# matplotlib tells the types of its own functions in part only.
-# pyright: reportUnknownMemberType=false, reportUnknownVariableType=false, reportUnknownArgumentType=false
-
-
-ROUND_M = 1.2  # of the plan, on each side of the robot
-
-
 def movements(panel: Axes, trace: Trace, options: Maps) -> None:  # noqa: ARG001
-    """A turn on the spot has no arc, and is left out."""
-    plan(panel, trace)
+    """The arcs among which a robot on a route chose at one moment, and the one that it drove. ACRA 2006 4.3, figure 4.
+
+    A turn on the spot has no arc, and is left out.
+    """
+    _plan(panel, trace)
     shown = trace.movements
     if shown is None:
         panel.set_xlabel("no choice between free and barred arcs", color=SOFT)

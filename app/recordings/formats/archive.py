@@ -1,9 +1,7 @@
 """Archives of recordings: unpacked into a folder of their own, within limits, and nowhere else.
 
-Refused: names that lead out of the folder, more files or bytes than a recording has, and what unpacks to a hundred times its
-size. Links and devices are left out and told of. test_folders.py.
-
-Unpacks zstd and lz4, and never more than was said.
+Refused: names that lead out of the folder, more files or bytes than a recording has, and what unpacks to a hundred
+times its size. Links and devices are left out and told of. test_folders.py. Zstandard and LZ4 are unpacked in memory.
 """
 
 from __future__ import annotations
@@ -25,55 +23,18 @@ import zstandard
 
 from disk.words import plain
 
-ZSTD = b"\x28\xb5\x2f\xfd"  # with which each frame begins
-
-
-def zstd_unpacked(data: bytes, most: int) -> bytes:
-    """ValueError: it is broken, or unpacks to more than `most` bytes.
-
-    Fed piece by piece, since it has no limit of its own: a piece of 1 kB unpacks to some 16 MB at most.
-    """
-    unpacker: Any = zstandard.ZstdDecompressor().decompressobj()
-    out = bytearray()
-    try:
-        for at in range(0, len(data), 1024):
-            out += unpacker.decompress(data[at : at + 1024])
-            if len(out) > most:
-                raise ValueError(f"more than the {most} bytes that it says")
-            if unpacker.eof:
-                break
-    except zstandard.ZstdError as error:
-        raise ValueError(f"cannot be unpacked: {error}") from None
-    return bytes(out)
-
-
-def lz4_unpacked(data: bytes, most: int) -> bytes:
-    """ValueError: it is broken, or unpacks to more than `most` bytes."""
-    unpacker: Any = lz4.frame.LZ4FrameDecompressor()
-    out: bytes = unpacker.decompress(data, max_length=most + 1)
-    if len(out) > most:
-        raise ValueError(f"more than the {most} bytes that it says")
-    return out
-
-
 MOST_BYTES, MOST_FILES, MOST_RATIO = 16_000_000_000, 500_000, 100
 SPARE_BYTES = 500_000_000  # of the disk are left free
 _SMALL = 10_000_000  # bytes that any archive may unpack to
 _PIECE = 1 << 20
-_OTHERS = ((b"7z\xbc\xaf'\x1c", "7z"), (b"Rar!", "RAR"), (b"\x28\xb5\x2f\xfd", "Zstandard"))
+ZSTD = b"\x28\xb5\x2f\xfd"  # with which each frame begins
+_OTHERS = ((b"7z\xbc\xaf'\x1c", "7z"), (b"Rar!", "RAR"), (ZSTD, "Zstandard"))
 _ZIP = (b"PK\x03\x04", b"PK\x05\x06")
 _PACKED = (b"\x1f\x8b", b"BZh", b"\xfd7zXZ\0")
 # Broken files; RuntimeError: one with a password, or packed in a way that the library does not know.
 _BROKEN = (
     tarfile.TarError, zipfile.BadZipFile, OSError, EOFError, zlib.error, lzma.LZMAError, LookupError, RuntimeError,
 )  # fmt: skip
-
-
-@dataclass(frozen=True, slots=True)
-class _Member:
-    name: str
-    size: int
-    file: IO[bytes] | None  # None: no regular file
 
 
 def is_archive(path: Path) -> bool:
@@ -97,8 +58,8 @@ def _is_tar(path: Path) -> bool:
 
 
 def unpack(path: Path) -> tuple[Path, tuple[str, ...]]:
-    """The folder that it was unpacked into, which is the caller's to delete, and a sentence for each member that was left out.
-    ValueError: it is broken, or more than a recording is."""
+    """The folder that it was unpacked into, which is the caller's to delete, and a sentence for each member that was
+    left out. ValueError: it is broken, or more than a recording is."""
     folder = Path(tempfile.mkdtemp(prefix="ratslam-unpacked-"))
     try:
         return folder, _unpack(path, folder)
@@ -145,6 +106,12 @@ def _place(path: Path, folder: Path, name: str) -> Path:
     return folder.joinpath(*parts)
 
 
+@dataclass(frozen=True, slots=True)
+class _Member:
+    name: str
+    file: IO[bytes] | None  # None: no regular file
+
+
 def _zip(path: Path) -> Generator[_Member, None, None]:
     with zipfile.ZipFile(path) as packed:
         infos = packed.infolist()
@@ -155,11 +122,39 @@ def _zip(path: Path) -> Generator[_Member, None, None]:
                 continue
             mode = info.external_attr >> 16
             regular = mode & 0o170000 in (0, 0o100000)
-            yield _Member(info.filename, info.file_size, packed.open(info) if regular else None)
+            yield _Member(info.filename, packed.open(info) if regular else None)
 
 
 def _tar(path: Path) -> Generator[_Member, None, None]:
     with tarfile.open(path, "r|*") as packed:
         for info in packed:
             if not info.isdir():
-                yield _Member(info.name, info.size, packed.extractfile(info) if info.isreg() else None)
+                yield _Member(info.name, packed.extractfile(info) if info.isreg() else None)
+
+
+def zstd_unpacked(data: bytes, most: int) -> bytes:
+    """ValueError: it is broken, or unpacks to more than `most` bytes.
+
+    Fed piece by piece, since it has no limit of its own: a piece of 1 kB unpacks to some 16 MB at most.
+    """
+    unpacker: Any = zstandard.ZstdDecompressor().decompressobj()
+    out = bytearray()
+    try:
+        for at in range(0, len(data), 1024):
+            out += unpacker.decompress(data[at : at + 1024])
+            if len(out) > most:
+                raise ValueError(f"more than the {most} bytes that it says")
+            if unpacker.eof:
+                break
+    except zstandard.ZstdError as error:
+        raise ValueError(f"cannot be unpacked: {error}") from None
+    return bytes(out)
+
+
+def lz4_unpacked(data: bytes, most: int) -> bytes:
+    """ValueError: it is broken, or unpacks to more than `most` bytes."""
+    unpacker: Any = lz4.frame.LZ4FrameDecompressor()
+    out: bytes = unpacker.decompress(data, max_length=most + 1)
+    if len(out) > most:
+        raise ValueError(f"more than the {most} bytes that it says")
+    return out

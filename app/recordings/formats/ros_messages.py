@@ -1,8 +1,5 @@
-"""Messages of ROS unpacked: pictures, odometry, gyros, scans, transforms, poses.
-
-A message as a file of ROS holds it: topic, type and bytes, whichever file it came from.
-
-Raw pictures as cameras and drivers of ROS send them, by the names of sensor_msgs/image_encodings and usb_cam.
+"""Messages of ROS, whichever file they came from: topic, type and bytes; unpacked: pictures, odometry, gyros, scans,
+transforms and poses.
 """
 
 from __future__ import annotations
@@ -25,6 +22,20 @@ from app.recordings.formats.archive import ZSTD, zstd_unpacked
 from app.recordings.formats.pictures import require_size, unpacked
 from app.recordings.formats.sensed import Beams, heading_of
 from app.recordings.recording import Pose
+
+IMAGE, COMPRESSED = "sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage"
+ODOMETRY, IMU, SCAN = "nav_msgs/msg/Odometry", "sensor_msgs/msg/Imu", "sensor_msgs/msg/LaserScan"
+TF, TF_OLD = "tf2_msgs/msg/TFMessage", "tf/msg/tfMessage"
+POSE, POSE_COVARIANCE = "geometry_msgs/msg/PoseStamped", "geometry_msgs/msg/PoseWithCovarianceStamped"
+TRANSFORM = "geometry_msgs/msg/TransformStamped"
+FLOATS, NUMBER = "std_msgs/msg/Float64MultiArray", "std_msgs/msg/UInt8"
+TRANSFORMS = (TF, TF_OLD)
+STAMPED = (IMAGE, COMPRESSED, ODOMETRY, IMU, SCAN, POSE, POSE_COVARIANCE, TRANSFORM)
+SONAR_ANGLES = "angles of the sonars"  # type of a packet that is no message: what a run of ours says of itself
+
+MOST_CHUNK = 256_000_000  # bytes, packed and unpacked; a file that claims more is not believed
+_MOST_BEAMS, _MOST_DEFINITION = 10_000, 50_000  # of a scan; characters of a type's definition
+_FAR = 1e7  # m
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,121 +62,20 @@ def type_of(name: str) -> str:
 
 
 def cdr_of(data: bytes) -> bytes:
-    """A message of ROS 2; `ros2 bag record --compression-mode message` packs each. ValueError: it cannot be unpacked."""
+    """A message of ROS 2, which `ros2 bag record --compression-mode message` packs. ValueError: it is broken."""
     return zstd_unpacked(data, MOST_CHUNK) if data.startswith(ZSTD) else data
 
 
-SONAR_ANGLES = "angles of the sonars"  # type of a packet that is no message: what a run of ours says of itself
-MOST_CHUNK = 256_000_000  # bytes, packed and unpacked; a file that claims more is not believed
+def message(packet: Packet) -> Any:
+    """It unpacked. ValueError: it is broken."""
+    store = _store(packet.ros1, packet.type, packet.definition)
+    try:
+        return (store.deserialize_ros1 if packet.ros1 else store.deserialize_cdr)(packet.data, packet.type)
+    except Exception as error:  # of a reader that was made for whole messages: whatever a broken one makes of it
+        raise ValueError(f"cannot be unpacked as {packet.type}: {error}") from None
 
 
-Pixels = NDArray[Any]  # of 8 or 16 bits
-
-
-@dataclass(frozen=True, slots=True)
-class _Layout:
-    """How pixels lie in memory, and what OpenCV makes RGB of them with."""
-
-    channels: int
-    code: int | None  # None: they are RGB
-    depth: int = 8  # bits of each channel
-    rows: tuple[int, int] = (
-        1,
-        1,
-    )  # of memory for so many rows of the picture: planes of colour come after the grey one
-
-
-def _layouts() -> dict[str, _Layout]:
-    found = {
-        "rgb": _Layout(3, None), "bgr": _Layout(3, cv2.COLOR_BGR2RGB), "rgba": _Layout(4, cv2.COLOR_RGBA2RGB),
-        "bgra": _Layout(4, cv2.COLOR_BGRA2RGB), "mono": _Layout(1, cv2.COLOR_GRAY2RGB),
-    }  # fmt: skip
-    for pattern in ("rggb", "bggr", "gbrg", "grbg"):
-        found[f"bayer_{pattern}"] = _Layout(1, getattr(cv2, f"COLOR_Bayer{pattern.upper()}2RGB"))
-    layouts = {
-        f"{name}{depth}": _Layout(it.channels, it.code, depth) for name, it in found.items() for depth in (8, 16)
-    }
-    for depth in (8, 16):
-        of_type = {1: "mono", 3: "bgr", 4: "bgra"}  # as cv_bridge takes pictures that say their type alone
-        layouts |= {f"{depth}uc{n}": layouts[f"{name}{depth}"] for n, name in of_type.items()}
-    uyvy, yuyv = _Layout(2, cv2.COLOR_YUV2RGB_UYVY), _Layout(2, cv2.COLOR_YUV2RGB_YUYV)
-    layouts |= dict.fromkeys(("yuv422", "uyvy", "uyvy8", "yuv422_uyvy"), uyvy)
-    layouts |= dict.fromkeys(("yuv422_yuy2", "yuy2", "yuyv", "yuyv8", "yuv422_yuyv"), yuyv)
-    layouts |= {"yvyu": _Layout(2, cv2.COLOR_YUV2RGB_YVYU), "yuv444": _Layout(3, cv2.COLOR_YUV2RGB)}
-    for names, code in (
-        (("nv12",), cv2.COLOR_YUV2RGB_NV12), (("nv21",), cv2.COLOR_YUV2RGB_NV21), (("yv12",), cv2.COLOR_YUV2RGB_YV12),
-        (("i420", "iyuv", "yuv420", "yu12"), cv2.COLOR_YUV2RGB_I420),
-    ):  # fmt: skip
-        layouts |= dict.fromkeys(names, _Layout(1, code, rows=(3, 2)))
-    return layouts | {"nv24": _Layout(1, cv2.COLOR_YUV2RGB, rows=(3, 1))}
-
-
-_LAYOUTS = _layouts()
-
-
-def decoded(
-    encoding: str, width: int, height: int, step: int, data: NDArray[np.uint8], bigendian: bool = False
-) -> NDArray[np.uint8]:
-    """RGB, (h, w, 3). step: bytes a row; of 16 bits the upper 8 count. ValueError: not such a picture, or not all of it."""
-    layout = _LAYOUTS.get(str(encoding).strip().lower())
-    if layout is None:
-        raise ValueError(f"a picture of encoding {str(encoding)[:30]!r}; {', '.join(_LAYOUTS)} are read")
-    require_size(width, height)
-    size, rows = layout.depth // 8, height * layout.rows[0] // layout.rows[1]
-    row = width * layout.channels * size
-    if rows == 1:
-        step = row
-    elif layout.rows != (1, 1):
-        step = width  # their planes follow one another without a gap, whatever is said
-    if step < row or len(data) < step * (rows - 1) + row:
-        raise ValueError(f"{len(data)} bytes are too few for {width} x {height} pixels of {encoding}")
-    whole = np.zeros(step * rows, np.uint8)  # the last row may end with its last pixel
-    whole[: min(len(data), len(whole))] = data[: len(whole)]
-    flat = np.ascontiguousarray(whole.reshape(rows, step)[:, :row])
-    pixels: Pixels = flat
-    if layout.depth == 16:
-        pixels = (flat.view(">u2" if bigendian else "<u2") >> 0).astype(np.uint16)
-    pixels = pixels.reshape(rows, width, layout.channels) if layout.channels > 1 else pixels
-    return _rgb(_planes(pixels, height) if layout.rows == (3, 1) else pixels, layout)
-
-
-def _planes(pixels: Pixels, height: int) -> Pixels:
-    """Of NV24: grey, then both colours by turns, (h, w, 3)."""
-    width = pixels.shape[1]
-    return np.dstack((pixels[:height], pixels[height:].reshape(height, width, 2)))
-
-
-def _rgb(pixels: Pixels, layout: _Layout) -> NDArray[np.uint8]:
-    if layout.code is not None:
-        try:
-            pixels = np.asarray(cv2.cvtColor(pixels, layout.code))
-        except cv2.error as error:
-            raise ValueError(f"its pixels cannot be converted: {error.err or 'odd sides'}") from None
-    return np.asarray(pixels >> 8 if layout.depth == 16 else pixels, np.uint8)
-
-
-IMAGE, COMPRESSED = "sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage"
-ODOMETRY, IMU, SCAN = "nav_msgs/msg/Odometry", "sensor_msgs/msg/Imu", "sensor_msgs/msg/LaserScan"
-TF, TF_OLD = "tf2_msgs/msg/TFMessage", "tf/msg/tfMessage"
-POSE, POSE_COVARIANCE = "geometry_msgs/msg/PoseStamped", "geometry_msgs/msg/PoseWithCovarianceStamped"
-TRANSFORM = "geometry_msgs/msg/TransformStamped"
-FLOATS, NUMBER = "std_msgs/msg/Float64MultiArray", "std_msgs/msg/UInt8"
-TRANSFORMS = (TF, TF_OLD)
-STAMPED = (IMAGE, COMPRESSED, ODOMETRY, IMU, SCAN, POSE, POSE_COVARIANCE, TRANSFORM)
-
-_MOST_BEAMS, _MOST_DEFINITION = 10_000, 50_000
 _IDL = re.compile(r"^=+\nIDL: [A-Za-z0-9_/]+\n", re.MULTILINE)
-_FAR = 1e7
-
-
-@lru_cache(maxsize=2)
-def _table(ros1: bool) -> Any:
-    """What types usually look like. rosbags' table of ROS 1 has no transforms."""
-    store = get_typestore(Stores.ROS1_NOETIC if ros1 else Stores.ROS2_HUMBLE)
-    for type_ in TRANSFORMS:
-        if type_ not in store.types:
-            store.register(get_types_from_msg("geometry_msgs/TransformStamped[] transforms", type_))
-    return store
 
 
 @lru_cache(maxsize=64)
@@ -190,6 +100,16 @@ def _store(ros1: bool, type_: str, definition: str) -> Any:
     return store
 
 
+@lru_cache(maxsize=2)
+def _table(ros1: bool) -> Any:
+    """What types usually look like. rosbags' table of ROS 1 has no transforms."""
+    store = get_typestore(Stores.ROS1_NOETIC if ros1 else Stores.ROS2_HUMBLE)
+    for type_ in TRANSFORMS:
+        if type_ not in store.types:
+            store.register(get_types_from_msg("geometry_msgs/TransformStamped[] transforms", type_))
+    return store
+
+
 def _require_like(type_: str, told: Any, usual: Any) -> None:
     """ValueError: a field that is read is not there, or is something else."""
     fields = dict(told.get(type_, ((), ()))[1])
@@ -199,20 +119,9 @@ def _require_like(type_: str, told: Any, usual: Any) -> None:
                 f"as the file defines it, {type_} is another type: its field {name!r} is missing or different"
             )
         inner = kind if kind[0] == Nodetype.NAME else kind[1][0]
-        if inner[0] == Nodetype.NAME and inner[1] not in (
-            "builtin_interfaces/msg/Time",
-            "builtin_interfaces/msg/Duration",
-        ):
+        times = "builtin_interfaces/msg/Time", "builtin_interfaces/msg/Duration"
+        if inner[0] == Nodetype.NAME and inner[1] not in times:
             _require_like(inner[1], told, usual)
-
-
-def message(packet: Packet) -> Any:
-    """The message. ValueError: it is broken."""
-    store = _store(packet.ros1, packet.type, packet.definition)
-    try:
-        return (store.deserialize_ros1 if packet.ros1 else store.deserialize_cdr)(packet.data, packet.type)
-    except Exception as error:  # of a reader that was made for whole messages: whatever a broken one makes of it
-        raise ValueError(f"cannot be unpacked as {packet.type}: {error}") from None
 
 
 def stamp_ns(packet: Packet) -> int:
@@ -226,14 +135,6 @@ def stamp_ns(packet: Packet) -> int:
     except (struct.error, IndexError):
         return 0
     return int(seconds) * 10**9 + int(nanoseconds)
-
-
-def picture(packet: Packet) -> NDArray[np.uint8]:
-    """RGB. ValueError: it is broken, or of a kind that is not read."""
-    told = message(packet)
-    if packet.type == COMPRESSED:
-        return unpacked(bytes(told.data), told.format)
-    return decoded(told.encoding, told.width, told.height, told.step, told.data, bool(told.is_bigendian))
 
 
 def pose(told: Any) -> Pose:
@@ -283,6 +184,12 @@ def _beams(n: int, start: float, step: float, limit: float) -> Beams:
     return Beams(tuple(start + k * step for k in range(n)), limit)
 
 
+def scan_ranges(told: Any) -> NDArray[np.float64]:
+    """inf: nothing in range, or no measurement."""
+    ranges = np.asarray(told.ranges, np.float64)
+    return np.where(np.isfinite(ranges) & (ranges >= told.range_min) & (ranges < told.range_max), ranges, np.inf)
+
+
 def told_angles(packet: Packet) -> Beams:
     """Where the sonars of a run of ours look; a scan of ROS can hold only beams that are spread evenly."""
     try:
@@ -293,7 +200,88 @@ def told_angles(packet: Packet) -> Beams:
     return Beams(beams if len(beams) <= _MOST_BEAMS and all(abs(angle) < 10 for angle in beams) else ())
 
 
-def scan_ranges(told: Any) -> NDArray[np.float64]:
-    """inf: nothing in range, or no measurement."""
-    ranges = np.asarray(told.ranges, np.float64)
-    return np.where(np.isfinite(ranges) & (ranges >= told.range_min) & (ranges < told.range_max), ranges, np.inf)
+def picture(packet: Packet) -> NDArray[np.uint8]:
+    """RGB. ValueError: it is broken, or of a kind that is not read."""
+    told = message(packet)
+    if packet.type == COMPRESSED:
+        return unpacked(bytes(told.data), told.format)
+    return decoded(told.encoding, told.width, told.height, told.step, told.data, bool(told.is_bigendian))
+
+
+_Pixels = NDArray[Any]  # of 8 or 16 bits
+
+
+@dataclass(frozen=True, slots=True)
+class _Layout:
+    """How pixels lie in memory, and what OpenCV makes RGB of them with."""
+
+    channels: int
+    code: int | None  # None: they are RGB
+    depth: int = 8  # bits of each channel
+    rows: tuple[int, int] = (1, 1)  # of memory for rows of the picture: planes of colour come after the grey one
+
+
+def _layouts() -> dict[str, _Layout]:
+    """By the names of sensor_msgs/image_encodings and of usb_cam."""
+    found = {
+        "rgb": _Layout(3, None), "bgr": _Layout(3, cv2.COLOR_BGR2RGB), "rgba": _Layout(4, cv2.COLOR_RGBA2RGB),
+        "bgra": _Layout(4, cv2.COLOR_BGRA2RGB), "mono": _Layout(1, cv2.COLOR_GRAY2RGB),
+    }  # fmt: skip
+    for pattern in ("rggb", "bggr", "gbrg", "grbg"):
+        found[f"bayer_{pattern}"] = _Layout(1, getattr(cv2, f"COLOR_Bayer{pattern.upper()}2RGB"))
+    layouts = {
+        f"{name}{depth}": _Layout(it.channels, it.code, depth) for name, it in found.items() for depth in (8, 16)
+    }
+    for depth in (8, 16):
+        of_type = {1: "mono", 3: "bgr", 4: "bgra"}  # as cv_bridge takes pictures that say their type alone
+        layouts |= {f"{depth}uc{n}": layouts[f"{name}{depth}"] for n, name in of_type.items()}
+    uyvy, yuyv = _Layout(2, cv2.COLOR_YUV2RGB_UYVY), _Layout(2, cv2.COLOR_YUV2RGB_YUYV)
+    layouts |= dict.fromkeys(("yuv422", "uyvy", "uyvy8", "yuv422_uyvy"), uyvy)
+    layouts |= dict.fromkeys(("yuv422_yuy2", "yuy2", "yuyv", "yuyv8", "yuv422_yuyv"), yuyv)
+    layouts |= {"yvyu": _Layout(2, cv2.COLOR_YUV2RGB_YVYU), "yuv444": _Layout(3, cv2.COLOR_YUV2RGB)}
+    for names, code in (
+        (("nv12",), cv2.COLOR_YUV2RGB_NV12), (("nv21",), cv2.COLOR_YUV2RGB_NV21), (("yv12",), cv2.COLOR_YUV2RGB_YV12),
+        (("i420", "iyuv", "yuv420", "yu12"), cv2.COLOR_YUV2RGB_I420),
+    ):  # fmt: skip
+        layouts |= dict.fromkeys(names, _Layout(1, code, rows=(3, 2)))
+    return layouts | {"nv24": _Layout(1, cv2.COLOR_YUV2RGB, rows=(3, 1))}
+
+
+_LAYOUTS = _layouts()
+
+
+def decoded(
+    encoding: str, width: int, height: int, step: int, data: NDArray[np.uint8], bigendian: bool = False
+) -> NDArray[np.uint8]:
+    """A raw picture as RGB, (h, w, 3). step: bytes a row. Of 16 bits the upper 8 count. ValueError: it is none."""
+    layout = _LAYOUTS.get(str(encoding).strip().lower())
+    if layout is None:
+        raise ValueError(f"a picture of encoding {str(encoding)[:30]!r}; {', '.join(_LAYOUTS)} are read")
+    require_size(width, height)
+    size, rows = layout.depth // 8, height * layout.rows[0] // layout.rows[1]
+    row = width * layout.channels * size
+    if rows == 1:
+        step = row
+    elif layout.rows != (1, 1):
+        step = width  # their planes follow one another without a gap, whatever is said
+    if step < row or len(data) < step * (rows - 1) + row:
+        raise ValueError(f"{len(data)} bytes are too few for {width} x {height} pixels of {encoding}")
+    whole = np.zeros(step * rows, np.uint8)  # the last row may end with its last pixel
+    whole[: min(len(data), len(whole))] = data[: len(whole)]
+    flat = np.ascontiguousarray(whole.reshape(rows, step)[:, :row])
+    pixels: _Pixels = flat
+    if layout.depth == 16:
+        pixels = (flat.view(">u2" if bigendian else "<u2") >> 0).astype(np.uint16)
+    pixels = pixels.reshape(rows, width, layout.channels) if layout.channels > 1 else pixels
+    if layout.rows == (3, 1):  # NV24: grey, then both colours by turns
+        pixels = np.dstack((pixels[:height], pixels[height:].reshape(height, width, 2)))
+    return _rgb(pixels, layout)
+
+
+def _rgb(pixels: _Pixels, layout: _Layout) -> NDArray[np.uint8]:
+    if layout.code is not None:
+        try:
+            pixels = np.asarray(cv2.cvtColor(pixels, layout.code))
+        except cv2.error as error:
+            raise ValueError(f"its pixels cannot be converted: {error.err or 'odd sides'}") from None
+    return np.asarray(pixels >> 8 if layout.depth == 16 else pixels, np.uint8)

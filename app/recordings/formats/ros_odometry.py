@@ -1,6 +1,5 @@
-"""Whether what sources say of one motion agrees: an odometry's speed with its poses, a gyro's turns with those of the wheels.
-
-Which of all transforms is the odometry, by what moves and where it leads rather than by a list of names.
+"""Which of all transforms is the odometry, by what moves and where it leads rather than by a list of names; and whether
+what sources say of one motion agrees: an odometry's speed with its poses, a gyro's turns with those of the wheels.
 """
 
 from __future__ import annotations
@@ -27,38 +26,6 @@ _MOST = 10_000  # transforms; no robot has so many
 Edge = tuple[str, str]  # parent, child
 
 
-@dataclass
-class Moving:
-    """One transform, after all messages have gone by."""
-
-    count: int = 0  # messages in which it is
-    first: Pose | None = None
-    moved: bool = False
-
-    def note(self, pose: Pose) -> None:
-        self.first = self.first or pose
-        self.moved |= max(abs(a - b) for a, b in zip(pose, self.first, strict=True)) > _STIRS
-
-
-def transforms_in(told: Any) -> Iterator[tuple[Edge, Any]]:
-    """Those of a message, each once."""
-    seen = set[Edge]()
-    for part in told.transforms:
-        edge = part.header.frame_id.strip("/"), part.child_frame_id.strip("/")
-        if edge not in seen:
-            seen.add(edge)
-            yield edge, part
-
-
-def note(told: Any, edges: dict[Edge, Moving]) -> None:
-    """ValueError: one of them is broken."""
-    for edge, part in transforms_in(told):
-        if edge in edges or len(edges) < _MOST:
-            moving = edges.setdefault(edge, Moving())
-            moving.count += 1
-            moving.note(ros.pose(part))
-
-
 @dataclass(frozen=True, slots=True)
 class Wheels:
     """The transform that is taken as odometry."""
@@ -80,8 +47,8 @@ class Wheels:
 
 
 def wheels_of(topics: Mapping[str, Mapping[Edge, Moving]]) -> Wheels | None:
-    """[ours] Of the transforms of all topics: one that moves rather than one that does not, then from a frame of odometry
-    to the robot, then whatever moves and leads to the robot."""
+    """[ours] Of the transforms of all topics: one that moves rather than one that does not, then from a frame of
+    odometry to the robot, then whatever moves and leads to the robot."""
     tree: dict[str, list[str]] = {}
     for edges in topics.values():
         for parent, child in edges:
@@ -126,6 +93,38 @@ def _last(frame: str) -> str:
     return frame.rpartition("/")[2]
 
 
+@dataclass
+class Moving:
+    """One transform, after all messages have gone by."""
+
+    count: int = 0  # messages in which it is
+    first: Pose | None = None
+    moved: bool = False
+
+    def note(self, pose: Pose) -> None:
+        self.first = self.first or pose
+        self.moved |= max(abs(a - b) for a, b in zip(pose, self.first, strict=True)) > _STIRS
+
+
+def note(told: Any, edges: dict[Edge, Moving]) -> None:
+    """ValueError: one of them is broken."""
+    for edge, part in transforms_in(told):
+        if edge in edges or len(edges) < _MOST:
+            moving = edges.setdefault(edge, Moving())
+            moving.count += 1
+            moving.note(ros.pose(part))
+
+
+def transforms_in(told: Any) -> Iterator[tuple[Edge, Any]]:
+    """Those of a message, each once."""
+    seen = set[Edge]()
+    for part in told.transforms:
+        edge = part.header.frame_id.strip("/"), part.child_frame_id.strip("/")
+        if edge not in seen:
+            seen.add(edge)
+            yield edge, part
+
+
 _WINDOW_NS = 10**9
 _MOVES = (0.05, 0.1)  # m and rad in a window; less is noise
 _UNLIKE, _MANY, _LEAST = 0.3, 0.25, 2  # share of the motion; of the windows with motion; windows
@@ -153,8 +152,8 @@ class Turns:
 
 
 def unlike_turns(wheels: dict[int, float], gyro: dict[int, float]) -> tuple[float, float] | None:
-    """[ours] Both turns, rad, forwards and backwards, where they contradict each other in a quarter of the windows in which
-    either turns, two at least. None: they agree. test_recording_ros.py::test_a_gyro_that_turns_otherwise_than_the_wheels."""
+    """[ours] Both turns, rad, to and fro, where they contradict each other in a quarter of the windows in which either
+    turns, two at least; else None. test_recording_ros.py::test_a_gyro_that_turns_otherwise_than_the_wheels."""
     both = [(wheels[window], gyro[window]) for window in wheels.keys() & gyro.keys()]
     turning = [(a, b) for a, b in both if max(abs(a), abs(b)) > _TURN_RAD]
     unlike = sum(abs(a - b) > _UNLIKE * max(abs(a), abs(b)) for a, b in turning)
@@ -204,7 +203,7 @@ class Odometer:
     def by_poses(self) -> bool:
         """[ours] Whether the poses are to be believed rather than the twist.
 
-        Poses are what drivers are tested by: their twists come in wrong frames (the world's), in wrong units, or not at all.
+        Poses are what drivers are tested by; twists come in a wrong frame (the world's), in wrong units, or not at all.
         """
         return self.moved and (not self.twisted or self.unlike)
 
@@ -215,8 +214,8 @@ class Odometer:
 
     @property
     def longer(self) -> float | None:
-        """[ours] By which share the way by twists is longer, where both tell the same motion: a wrong radius of the wheels.
-        None: they agree, or it hardly moved. test_recording_ros.py::test_a_twist_of_another_scale_is_said."""
+        """[ours] By which share the way by twists is longer, where both tell the same motion: a wrong radius of the
+        wheels. None: they agree, or it hardly moved. test_recording_ros.py::test_a_twist_of_another_scale_is_said."""
         poses, twist = self._far_m
         if self.unlike or not self.twisted or min(poses, twist) < _FAR_M or abs(twist / poses - 1) < _SCALE:
             return None

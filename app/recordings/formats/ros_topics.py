@@ -1,6 +1,5 @@
-"""Which topic of a ROS recording is used for what.
-
-Which time of a message counts: that in its header, or that at which it was written down.
+"""Which topic of a ROS recording is used for what, and which time of its messages counts: that in the header, or that
+at which they were written down.
 """
 
 from __future__ import annotations
@@ -17,88 +16,9 @@ from app.recordings.formats.ros_messages import Packet
 from app.recordings.formats.ros_odometry import Edge, Moving, Odometer, Turns, Wheels, note, unlike_turns, wheels_of
 from disk.words import plain
 
-_WINDOW_NS = 10 * 10**9
-_APART_S = 0.5  # clocks that tell of one moment differ by less: it is more than a message is on its way
-_MANY = 0.25  # of the windows in which they were compared
-_REAL = 0.5  # a bag that was written anew in a moment has no times of its own
-
-
-@dataclass
-class Stamps:
-    """What is known of a topic's times after all of its messages have gone by."""
-
-    first_ns: int = 0
-    last_ns: int = 0
-    missing: bool = False  # a header without a time
-    back: bool = False  # times that go back
-    wrote_ns: list[int] = field(default_factory=list[int])  # when the first and the last one was written down
-    late_ns: dict[int, int] = field(default_factory=dict[int, int])  # the least from header to record, by windows
-
-    def note(self, stamp_ns: int, time_ns: int) -> None:
-        """stamp_ns: in the header; time_ns: when it was written down."""
-        self.missing |= stamp_ns <= 0
-        self.back |= stamp_ns < self.last_ns
-        self.first_ns, self.last_ns = self.first_ns or stamp_ns, stamp_ns
-        self.wrote_ns = [self.wrote_ns[0] if self.wrote_ns else time_ns, time_ns]
-        window, late = time_ns // _WINDOW_NS, time_ns - stamp_ns
-        self.late_ns[window] = min(late, self.late_ns.get(window, late))
-
-
-@dataclass(frozen=True, slots=True)
-class Times:
-    """Which times count."""
-
-    stamped: bool  # those in the headers
-    why: str = ""  # not, in words
-    problem: bool = False  # whether that is a fault of the recording
-
-
-def times_of(topics: Mapping[str, Stamps | None]) -> Times:
-    """[ours] topics: those that are used; None: of a type without a time.
-
-    Headers tell better when something was than the record does. But each may have been filled in by another clock, which
-    shows where messages that were written down together have headers far apart.
-    """
-    stamps = {name: stamp for name, stamp in topics.items() if stamp is not None and stamp.wrote_ns}
-    for name, stamp in topics.items():
-        if stamp is None:
-            return Times(False, f"{name} has no time of its own")
-    for name, stamp in stamps.items():
-        if stamp.missing:
-            return Times(False, f"headers of {name} are without a time")
-        if stamp.back:
-            return Times(False, f"times in the headers of {name} go back")
-    if (apart := _apart(stamps)) is None or not _real(list(stamps.values())):
-        return Times(True)
-    one, other, seconds = apart
-    return Times(False, f"the clocks of {one} and {other} are {seconds:.6g} s apart in their headers", True)
-
-
-def _apart(stamps: Mapping[str, Stamps]) -> tuple[str, str, float] | None:
-    """Two topics whose clocks differ, and by how much (s), in the middle of the windows in which they do."""
-    found, compared = list[tuple[float, str, str]](), 0
-    for window in sorted({window for stamp in stamps.values() for window in stamp.late_ns}):
-        late = sorted((stamp.late_ns[window], name) for name, stamp in stamps.items() if window in stamp.late_ns)
-        if len(late) > 1:
-            compared += 1
-            (least, one), (most, other) = late[0], late[-1]
-            if most - least > _APART_S * 1e9:
-                found.append(((most - least) / 1e9, min(one, other), max(one, other)))
-    if not found or len(found) <= _MANY * compared:
-        return None
-    seconds, one, other = sorted(found)[len(found) // 2]
-    return one, other, seconds
-
-
-def _real(stamps: Sequence[Stamps]) -> bool:
-    """Whether messages were written down when they came."""
-    wrote = max(s.wrote_ns[1] for s in stamps) - min(s.wrote_ns[0] for s in stamps)
-    return wrote >= _REAL * max(s.last_ns - s.first_ns for s in stamps)
-
-
 _TRUTH = re.compile(r"(^|[/_])(truth|ground_?truth|gt|true_pose|mocap|vicon|optitrack)([/_]|$)", re.IGNORECASE)
 _NOT_A_CAMERA = re.compile(r"depth|disparity|mask|segment|label|infra|thermal|normals|debug", re.IGNORECASE)
-UP = np.array([0.0, 0.0, 1.0])
+_UP = np.array([0.0, 0.0, 1.0])
 _TRUTHS = (ros.POSE, ros.ODOMETRY, ros.POSE_COVARIANCE, ros.TRANSFORM)
 _ODOMETRIES = {"odom", "odometry"}
 
@@ -159,7 +79,7 @@ class Topic:
     def up(self) -> NDArray[np.float64]:
         """What is up for the sensor: what it feels on the whole is the ground that carries it."""
         size = float(np.linalg.norm(self.accelerated))
-        return self.accelerated / size if size > self.count else UP
+        return self.accelerated / size if size > self.count else _UP
 
 
 @dataclass(frozen=True, slots=True)
@@ -203,6 +123,31 @@ def roles_of(topics: dict[str, Topic], choice: Choice) -> Roles:
     )  # fmt: skip
 
 
+def _chosen(
+    topics: dict[str, Topic],
+    asked: str | None,
+    types: tuple[str, ...],
+    fits: Callable[[str], object],
+    names: set[str] | None = None,
+) -> str | None:
+    if asked is not None:
+        if asked not in topics or topics[asked].type not in types:
+            there = ", ".join(name for name, topic in topics.items() if topic.type in types) or "none"
+            raise ValueError(f"topic {asked!r}: not in the recording with a type that fits; there are: {there}")
+        return asked
+    fitting = [name for name, topic in topics.items() if topic.type in types and fits(name)]
+    return min(fitting, key=lambda name: _rank(name, topics[name], names or set()), default=None)
+
+
+def _rank(name: str, topic: Topic, names: set[str]) -> tuple[bool, int, int, str]:
+    """The smallest is the best."""
+    return name.strip("/").lower() not in names, -topic.count, len(name), name
+
+
+def _is_truth(name: str) -> bool:
+    return _TRUTH.search(name) is not None
+
+
 def turned_otherwise(topics: dict[str, Topic], roles: Roles) -> Iterator[tuple[str, float, float]]:
     """Gyros that contradict the wheels: the topic, and how far the wheels and it turned, rad."""
     if roles.odometry is None:
@@ -210,7 +155,7 @@ def turned_otherwise(topics: dict[str, Topic], roles: Roles) -> Iterator[tuple[s
     odometer = topics[roles.odometry].odometer
     turns = odometer.turns_by_poses if odometer.by_poses else odometer.turns_by_twist
     for name, topic in topics.items():
-        if topic.type == ros.IMU and (both := unlike_turns(turns.about(UP), topic.turns.about(topic.up))) is not None:
+        if topic.type == ros.IMU and (both := unlike_turns(turns.about(_UP), topic.turns.about(topic.up))) is not None:
             yield name, *both
 
 
@@ -255,26 +200,80 @@ def _told(edges: list[Edge]) -> str:
     return f"{told} and {len(edges) - 5} more" if len(edges) > 5 else told or "none"
 
 
-def _is_truth(name: str) -> bool:
-    return _TRUTH.search(name) is not None
+_WINDOW_NS = 10 * 10**9
+_APART_S = 0.5  # clocks that tell of one moment differ by less: it is more than a message is on its way
+_MANY = 0.25  # of the windows in which they were compared
+_REAL = 0.5  # a bag that was written anew in a moment has no times of its own
 
 
-def _chosen(
-    topics: dict[str, Topic],
-    asked: str | None,
-    types: tuple[str, ...],
-    fits: Callable[[str], object],
-    names: set[str] | None = None,
-) -> str | None:
-    if asked is not None:
-        if asked not in topics or topics[asked].type not in types:
-            there = ", ".join(name for name, topic in topics.items() if topic.type in types) or "none"
-            raise ValueError(f"topic {asked!r}: not in the recording with a type that fits; there are: {there}")
-        return asked
-    fitting = [name for name, topic in topics.items() if topic.type in types and fits(name)]
-    return min(fitting, key=lambda name: _rank(name, topics[name], names or set()), default=None)
+@dataclass
+class Stamps:
+    """What is known of a topic's times after all of its messages have gone by."""
+
+    first_ns: int = 0
+    last_ns: int = 0
+    missing: bool = False  # a header without a time
+    back: bool = False  # times that go back
+    wrote_ns: list[int] = field(default_factory=list[int])  # when the first and the last one was written down
+    late_ns: dict[int, int] = field(default_factory=dict[int, int])  # the least from header to record, by windows
+
+    def note(self, stamp_ns: int, time_ns: int) -> None:
+        """stamp_ns: in the header; time_ns: when it was written down."""
+        self.missing |= stamp_ns <= 0
+        self.back |= stamp_ns < self.last_ns
+        self.first_ns, self.last_ns = self.first_ns or stamp_ns, stamp_ns
+        self.wrote_ns = [self.wrote_ns[0] if self.wrote_ns else time_ns, time_ns]
+        window, late = time_ns // _WINDOW_NS, time_ns - stamp_ns
+        self.late_ns[window] = min(late, self.late_ns.get(window, late))
 
 
-def _rank(name: str, topic: Topic, names: set[str]) -> tuple[bool, int, int, str]:
-    """The smallest is the best."""
-    return name.strip("/").lower() not in names, -topic.count, len(name), name
+@dataclass(frozen=True, slots=True)
+class Times:
+    """Which times count."""
+
+    stamped: bool  # those in the headers
+    why: str = ""  # not, in words
+    problem: bool = False  # whether that is a fault of the recording
+
+
+def times_of(topics: Mapping[str, Stamps | None]) -> Times:
+    """Which times count, of the topics that are used; None: of a type without a time.
+
+    [ours] Headers tell better when something was than the record does. But each may have been filled in by another
+    clock, which shows where messages that were written down together have headers far apart.
+    """
+    stamps = {name: stamp for name, stamp in topics.items() if stamp is not None and stamp.wrote_ns}
+    for name, stamp in topics.items():
+        if stamp is None:
+            return Times(False, f"{name} has no time of its own")
+    for name, stamp in stamps.items():
+        if stamp.missing:
+            return Times(False, f"headers of {name} are without a time")
+        if stamp.back:
+            return Times(False, f"times in the headers of {name} go back")
+    if (apart := _apart(stamps)) is None or not _real(list(stamps.values())):
+        return Times(True)
+    one, other, seconds = apart
+    return Times(False, f"the clocks of {one} and {other} are {seconds:.6g} s apart in their headers", True)
+
+
+def _apart(stamps: Mapping[str, Stamps]) -> tuple[str, str, float] | None:
+    """Two topics whose clocks differ, and by how much (s), in the middle of the windows in which they do."""
+    found, compared = list[tuple[float, str, str]](), 0
+    for window in sorted({window for stamp in stamps.values() for window in stamp.late_ns}):
+        late = sorted((stamp.late_ns[window], name) for name, stamp in stamps.items() if window in stamp.late_ns)
+        if len(late) > 1:
+            compared += 1
+            (least, one), (most, other) = late[0], late[-1]
+            if most - least > _APART_S * 1e9:
+                found.append(((most - least) / 1e9, min(one, other), max(one, other)))
+    if not found or len(found) <= _MANY * compared:
+        return None
+    seconds, one, other = sorted(found)[len(found) // 2]
+    return one, other, seconds
+
+
+def _real(stamps: Sequence[Stamps]) -> bool:
+    """Whether messages were written down when they came."""
+    wrote = max(s.wrote_ns[1] for s in stamps) - min(s.wrote_ns[0] for s in stamps)
+    return wrote >= _REAL * max(s.last_ns - s.first_ns for s in stamps)

@@ -1,10 +1,7 @@
 """A recording that is read as a stream: looked through once when it is opened, and played moment by moment.
 
-The time of a recording made one that never goes back, with a word wherever it had to be mended.
-
-A rate that was measured now and then, and its mean over the time between two moments.
-
-Scans whose beams differ from one to the next, laid onto the same beams by their angles.
+Its time never goes back, rates are means between two moments, scans lie on the same beams, and pictures have one size.
+Wherever something had to be mended or left out, that is told.
 """
 
 from __future__ import annotations
@@ -22,127 +19,9 @@ from app.recordings.formats.problems import Problems
 from app.recordings.formats.sensed import Beams, Sensed
 from app.recordings.recording import About, Moment, Pose, Wanted, every
 
-LATE_S = 1.0  # a message may come so much out of order
-BREAK_S = 60.0  # a longer silence is taken as a break, or as a clock that was set
-GOES_ON_S = 0.1  # so much passes in a break
-
-
-class Clock:
-    """[ours] Clocks of robots are set while they drive, and recordings are paused: time goes on after a break.
-
-    test_recording_parts.py::test_a_clock_that_was_set_goes_on.
-    """
-
-    def __init__(self, problems: Problems) -> None:
-        self._problems = problems
-        self._shift = 0
-        self._now: int | None = None
-
-    def at(self, time_ns: int, where: str) -> int:
-        """The mended time (ns)."""
-        now = self._now
-        if now is None:
-            self._shift = -time_ns
-            self._now = 0
-            return 0
-        time = time_ns + self._shift
-        off = (time - now) / 1e9
-        if off > BREAK_S or off < -LATE_S:
-            way = f"{off:.6g} s on" if off > 0 else f"{-off:.6g} s back"
-            self._problems.add(
-                "jumps of the clock", where, f"the time jumps {way}; it is taken as a break of {GOES_ON_S:g} s"
-            )
-            time = now + round(GOES_ON_S * 1e9)
-            self._shift = time - time_ns
-        self._now = max(now, time)
-        return self._now
-
-
-HELD_S = 1.0  # so long does the last value hold when no other comes
-
-
-class Held:
-    """Each value is that of the time since the one before. Times never go back."""
-
-    def __init__(self) -> None:
-        self._samples: list[tuple[int, float]] = []  # those that may still matter
-        self._before: int | None = None  # time of the sample before these
-
-    def add(self, time_ns: int, value: float) -> None:
-        if self._samples and time_ns <= self._samples[-1][0]:
-            return
-        self._samples.append((time_ns, value))
-
-    def mean(self, begin_ns: int, end_ns: int) -> float | None:
-        """The mean of (begin, end]; None where nothing was measured. Forgets what lies before the end.
-
-        A value that covers all of it is returned as it is, bit for bit.
-        """
-        total, covered, pieces = 0.0, 0, set[float]()
-        start = begin_ns if self._before is None else max(begin_ns, self._before)
-        for time, value in self._samples:
-            stop = min(time, end_ns)
-            if stop > start:
-                total, covered, start = total + value * (stop - start), covered + stop - start, stop
-                pieces.add(value)
-        if self._samples and start < end_ns:
-            time, value = self._samples[-1]
-            stop, start = min(end_ns, time + round(HELD_S * 1e9)), max(start, time)
-            if stop > start:
-                total, covered = total + value * (stop - start), covered + stop - start
-                pieces.add(value)
-        self._forget(end_ns)
-        if not covered:
-            return None
-        return pieces.pop() if len(pieces) == 1 else total / covered
-
-    def _forget(self, end_ns: int) -> None:
-        """Keep the samples after `end_ns` and the last one before, which may have to hold on."""
-        while len(self._samples) > 1 and self._samples[0][0] <= end_ns and self._samples[1][0] <= end_ns:
-            self._before = self._samples.pop(0)[0]
-        if len(self._samples) > 1 and self._samples[0][0] <= end_ns:
-            self._before = self._samples.pop(0)[0]
-
-
-LEAST = 0.5  # a scan that looks at less of the field is no scan of it
-
-
-def typical(beams: Sequence[Beams]) -> Beams:
-    """[ours] The middle one, ordered by number, first and last angle: the usual one where there is one, never the odd one."""
-    return sorted(beams, key=lambda b: (len(b.angles_rad), b.angles_rad[:1], b.angles_rad[-1:], b.limit_m or 0))[
-        len(beams) // 2
-    ]
-
-
-def laid_on(raster: Beams, beams: Beams, ranges_m: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Each of the raster's beams gets the range of the nearest beam, and inf where there is none.
-
-    ranges_m: of `beams`. The result has as many as the raster. ValueError: it looks somewhere else.
-    """
-    if beams.angles_rad == raster.angles_rad:
-        return ranges_m
-    own, wanted = np.mod(beams.angles_rad, math.tau), np.mod(raster.angles_rad, math.tau)
-    order = np.argsort(own, kind="stable")
-    round_ = np.concatenate(([own[order[-1]] - math.tau], own[order], [own[order[0]] + math.tau]))
-    number = np.concatenate(([order[-1]], order, [order[0]]))
-    after = np.clip(np.searchsorted(round_, wanted), 1, len(round_) - 1)
-    nearest = np.where(wanted - round_[after - 1] <= round_[after] - wanted, after - 1, after)
-    seen = np.abs(round_[nearest] - wanted) <= 0.501 * max(_step(beams), _step(raster))
-    if seen.mean() < LEAST:
-        raise ValueError(f"its {len(own)} ranges cover less than half of where the other scans look")
-    return np.where(seen, ranges_m[number[nearest]], np.inf)
-
-
-def _step(beams: Beams) -> float:
-    """The usual angle between neighbours (rad)."""
-    return float(np.median(np.abs(np.diff(beams.angles_rad)))) if len(beams.angles_rad) > 1 else 0.0
-
-
 SCAN_HELD_S, TRUTH_HELD_S = 0.25, 0.1  # older ones are not those of a picture
 DEFAULT_DT = 0.1  # of a single moment
 _LOOKED_AT, _SCANS = 1000, 200  # steps and scans, from which the typical one is taken
-_SAME_RATIO = 0.02  # pictures whose sides' ratios differ by no more show the same
-
 KINDS = ("camera", "ranges", "speed", "yaw rate", "throttle", "truth")
 
 Source = Callable[[Problems], Iterator[Sensed]]
@@ -187,10 +66,10 @@ class StreamedRecording:
             self._counts = problems.counts
 
     def _on_raster(self, sensed: Sensed, problems: Problems) -> Sensed:
-        """With its scan, if it has one, on the beams that all scans are laid on. Counts it, unless it makes a moment."""
+        """With its scan, if it has one, on the raster. Counts it, unless it makes a moment."""
         if sensed.ranges_m is not None and sensed.beams is not None:
             try:
-                sensed = replace(sensed, ranges_m=laid_on(self._raster, sensed.beams, sensed.ranges_m))
+                sensed = replace(sensed, ranges_m=_laid_on(self._raster, sensed.beams, sensed.ranges_m))
             except ValueError as error:
                 problems.add("scans left out", sensed.where, f"left out: {error}")
                 return replace(sensed, ranges_m=None)
@@ -234,7 +113,7 @@ class StreamedRecording:
         seconds = (times[main][1] - times[main][0]) / 1e9
         uses = tuple(sentence for sentence in uses if _sensed(sentence, has))
         if beams:
-            self._raster = typical(beams)
+            self._raster = _typical(beams)
             least, most = (rule(len(b.angles_rad) for b in beams) for rule in (min, max))
             if any(b.angles_rad != self._raster.angles_rad for b in beams):
                 uses += (f"scans of {least} to {most} ranges: laid by angle on {len(self._raster.angles_rad)} beams",)
@@ -248,6 +127,12 @@ def _sensed(sentence: str, has: set[str]) -> bool:
     """Whether something of what "speed and yaw rate (how): from where" announces was sensed; other sentences stand."""
     kinds = sentence.partition(":")[0].partition(" (")[0].split(" and ")
     return not all(kind in KINDS for kind in kinds) or any(kind in has for kind in kinds)
+
+
+def _kinds(sensed: Sensed) -> Iterator[str]:
+    """What it has, by the names of `About.has`."""
+    values = sensed.image, sensed.ranges_m, sensed.speed, sensed.yaw_rate, sensed.throttle, sensed.truth
+    return (kind for kind, value in zip(KINDS, values, strict=True) if value is not None)
 
 
 class _Shapes:
@@ -273,16 +158,6 @@ class _Shapes:
                 self.usual = height, width
         self._seen += 1
         return True
-
-
-def _kinds(sensed: Sensed) -> Iterator[str]:
-    """What it has, by the names of `About.has`."""
-    for kind, value in (
-        ("camera", sensed.image), ("ranges", sensed.ranges_m), ("speed", sensed.speed), ("yaw rate", sensed.yaw_rate),
-        ("throttle", sensed.throttle), ("truth", sensed.truth),
-    ):  # fmt: skip
-        if value is not None:
-            yield kind
 
 
 class _Gathering:
@@ -355,6 +230,9 @@ class _Gathering:
         )  # fmt: skip
 
 
+_SAME_RATIO = 0.02  # pictures whose sides' ratios differ by no more show the same
+
+
 class _Pictures:
     """Unpacks the pictures of moments, one after the other, as far as they are wanted."""
 
@@ -383,9 +261,8 @@ class _Pictures:
         assert sensed.image is not None
         try:
             image = sensed.image()
-            return (
-                image if image.shape[:2] == self._shape or self._shape is None else self._resized(image, sensed.where)
-            )
+            fits = self._shape is None or image.shape[:2] == self._shape
+            return image if fits else self._resized(image, sensed.where)
         except ValueError as error:
             self._problems.add("pictures left out", sensed.where, f"left out: {error}")
             return None
@@ -400,3 +277,118 @@ class _Pictures:
         self._problems.add("pictures resized", where, f"resized: {told}")
         how = cv2.INTER_AREA if rows > height else cv2.INTER_LINEAR
         return np.asarray(cv2.resize(image, (width, height), interpolation=how), np.uint8)
+
+
+LATE_S = 1.0  # a message may come so much out of order
+BREAK_S = 60.0  # a longer silence is taken as a break, or as a clock that was set
+GOES_ON_S = 0.1  # so much passes in a break
+
+
+class Clock:
+    """[ours] The time of a recording made one that never goes back.
+
+    Clocks of robots are set while they drive, and recordings are paused: time goes on after a break.
+    test_recording_parts.py::test_a_clock_that_was_set_goes_on.
+    """
+
+    def __init__(self, problems: Problems) -> None:
+        self._problems = problems
+        self._shift = 0
+        self._now: int | None = None
+
+    def at(self, time_ns: int, where: str) -> int:
+        """The mended time (ns)."""
+        now = self._now
+        if now is None:
+            self._shift = -time_ns
+            self._now = 0
+            return 0
+        time = time_ns + self._shift
+        off = (time - now) / 1e9
+        if off > BREAK_S or off < -LATE_S:
+            way = f"{off:.6g} s on" if off > 0 else f"{-off:.6g} s back"
+            self._problems.add(
+                "jumps of the clock", where, f"the time jumps {way}; it is taken as a break of {GOES_ON_S:g} s"
+            )
+            time = now + round(GOES_ON_S * 1e9)
+            self._shift = time - time_ns
+        self._now = max(now, time)
+        return self._now
+
+
+HELD_S = 1.0  # so long does the last value hold when no other comes
+
+
+class Held:
+    """A rate, measured now and then. Each value is that of the time since the one before; times never go back."""
+
+    def __init__(self) -> None:
+        self._samples: list[tuple[int, float]] = []  # those that may still matter
+        self._before: int | None = None  # time of the sample before these
+
+    def add(self, time_ns: int, value: float) -> None:
+        if self._samples and time_ns <= self._samples[-1][0]:
+            return
+        self._samples.append((time_ns, value))
+
+    def mean(self, begin_ns: int, end_ns: int) -> float | None:
+        """The mean of (begin, end]; None where nothing was measured. Forgets what lies before the end.
+
+        A value that covers all of it is returned as it is, bit for bit.
+        """
+        total, covered, pieces = 0.0, 0, set[float]()
+        start = begin_ns if self._before is None else max(begin_ns, self._before)
+        for time, value in self._samples:
+            stop = min(time, end_ns)
+            if stop > start:
+                total, covered, start = total + value * (stop - start), covered + stop - start, stop
+                pieces.add(value)
+        if self._samples and start < end_ns:
+            time, value = self._samples[-1]
+            stop, start = min(end_ns, time + round(HELD_S * 1e9)), max(start, time)
+            if stop > start:
+                total, covered = total + value * (stop - start), covered + stop - start
+                pieces.add(value)
+        self._forget(end_ns)
+        if not covered:
+            return None
+        return pieces.pop() if len(pieces) == 1 else total / covered
+
+    def _forget(self, end_ns: int) -> None:
+        """Keep the samples after `end_ns` and the last one before, which may have to hold on."""
+        while len(self._samples) > 1 and self._samples[0][0] <= end_ns and self._samples[1][0] <= end_ns:
+            self._before = self._samples.pop(0)[0]
+        if len(self._samples) > 1 and self._samples[0][0] <= end_ns:
+            self._before = self._samples.pop(0)[0]
+
+
+LEAST = 0.5  # a scan that looks at less of the field is no scan of it
+
+
+def _typical(beams: Sequence[Beams]) -> Beams:
+    """[ours] The middle one by number, first and last angle: the usual one where there is one, never the odd one."""
+    ranked = sorted(beams, key=lambda b: (len(b.angles_rad), b.angles_rad[:1], b.angles_rad[-1:], b.limit_m or 0))
+    return ranked[len(beams) // 2]
+
+
+def _laid_on(raster: Beams, beams: Beams, ranges_m: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Each beam of the raster, on which all scans are laid by their angles, gets the range of the nearest
+    beam, and inf where there is none. ranges_m: of `beams`. ValueError: it looks somewhere else.
+    """
+    if beams.angles_rad == raster.angles_rad:
+        return ranges_m
+    own, wanted = np.mod(beams.angles_rad, math.tau), np.mod(raster.angles_rad, math.tau)
+    order = np.argsort(own, kind="stable")
+    round_ = np.concatenate(([own[order[-1]] - math.tau], own[order], [own[order[0]] + math.tau]))
+    number = np.concatenate(([order[-1]], order, [order[0]]))
+    after = np.clip(np.searchsorted(round_, wanted), 1, len(round_) - 1)
+    nearest = np.where(wanted - round_[after - 1] <= round_[after] - wanted, after - 1, after)
+    seen = np.abs(round_[nearest] - wanted) <= 0.501 * max(_step(beams), _step(raster))
+    if seen.mean() < LEAST:
+        raise ValueError(f"its {len(own)} ranges cover less than half of where the other scans look")
+    return np.where(seen, ranges_m[number[nearest]], np.inf)
+
+
+def _step(beams: Beams) -> float:
+    """The usual angle between neighbours (rad)."""
+    return float(np.median(np.abs(np.diff(beams.angles_rad)))) if len(beams.angles_rad) > 1 else 0.0

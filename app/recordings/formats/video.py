@@ -1,11 +1,4 @@
-"""A video, with a CSV file of wheels beside it (same name, .csv) or without any.
-
-The frames of a video by their numbers. Going back, it jumps to a keyframe and does not unpack all from the beginning. [ours]
-
-Where a jump lands, and what comes after it, differs between formats. So of each frame its time and a checksum are noted when
-the video is read for the first time, and a frame after a jump counts only if it is that very frame; the first one that is
-not ends all jumps in this video, and it is read from its beginning as before. test_film.py.
-"""
+"""A video, with a CSV file of wheels beside it (same name, .csv) or without any."""
 
 from __future__ import annotations
 
@@ -29,13 +22,73 @@ from app.recordings.formats.streamed import StreamedRecording
 from app.recordings.formats.table import Table
 from disk.words import plain
 
+VIDEOS = (".mp4", ".avi", ".mkv", ".mov", ".webm", ".m4v", ".mpg", ".mpeg")
+_FIRST_BYTES = (b"RIFF", b"\x1aE\xdf\xa3", b"\x00\x00\x01\xba", b"\x00\x00\x01\xb3")
+_BOXES = (b"ftyp", b"moov", b"mdat", b"wide", b"free", b"skip")
+
+
+def open_video(path: Path) -> StreamedRecording:
+    """Frames have the times that the file gives them. ValueError: it is no video, or nothing in it can be read."""
+    _require_video(path)
+    beside = path.with_suffix(".csv")
+    table = Table(beside) if beside.is_file() else None
+    if table is not None:
+        table.survey()
+    if table is not None and "time" not in table.columns:
+        raise ValueError(f"{beside.name}: line 1: a video's CSV needs a column 'time_s', since the video's start")
+    uses = (f"camera: {plain(path.name)}", *(() if table is None else table.uses))
+    name = "video" if table is None else "video with CSV"
+    return StreamedRecording(path.name, name, partial(_sensed, _Film(path), table), uses=uses)
+
+
+def _require_video(path: Path) -> None:
+    with open_whole(path) as file:
+        first = file.read(12)
+    if not (first.startswith(_FIRST_BYTES) or first[4:8] in _BOXES):
+        raise ValueError(f"{path.name}: not a video that can be read; expected MP4, AVI, MKV or MPEG")
+
+
+def _sensed(film: _Film, table: Table | None, problems: Problems) -> Iterator[Sensed]:
+    """Frames and rows in the order of their times."""
+    rows = iter(()) if table is None else _rows(table, problems)
+    row = next(rows, None)
+    for frame in film.frames(problems):
+        while row is not None and row.time_ns <= frame.time_ns:
+            yield row
+            row = next(rows, None)
+        yield frame
+    if row is not None:  # covers the last frames, too
+        yield row
+
+
+def _rows(table: Table, problems: Problems) -> Iterator[Sensed]:
+    """Times since the video's start; those since 1970 begin with it."""
+    rates, first = Rates(), None
+    for number, cells in table.rows(problems):
+        where = table.where(number)
+        try:
+            time = table.time_ns(cells)
+            if time is None:
+                raise ValueError("it has no time")
+            if first is None:
+                first = time if time > 10**17 else 0
+            yield table.sensed(cells, time - first, where, rates, None)
+        except ValueError as error:
+            problems.add("lines left out", where, f"left out: {error}")
+
+
 FAR = 60  # frames: so many are sooner passed than jumped over
 BROKEN = -1  # in place of a checksum: the frame cannot be unpacked
 _OPTIONS = "protocol_whitelist;file|threads;1"  # a file may not make us read another, or one from a network
 
 
-class Film:
-    """All frames of one file."""
+class _Film:
+    """The frames of one file by their numbers. [ours] Going back, it jumps to a keyframe and does not unpack all anew.
+
+    Where a jump lands differs between formats. So time and checksum of each frame are noted when it is read first, and
+    a frame after a jump counts only if it is that very frame; the first one that is not ends all jumps in this
+    video, and it is read from its beginning as before. test_film.py.
+    """
 
     def __init__(self, path: Path) -> None:
         self._path = path
@@ -77,7 +130,7 @@ class Film:
             step_ns = round(1e9 / rate) if 0.01 < rate < 10_000 else 100_000_000
             number, last = 0, -1
             while video.grab():
-                time = told(video)
+                time = _grabbed_ns(video)
                 if time <= last:  # formats without times of their own
                     time = last + step_ns if number else 0
                 frame = _retrieved(video)  # at once: when it is asked for, the next one may be there already
@@ -96,10 +149,10 @@ class Film:
 
 
 class _Reading:
-    """A place at which a film that is known is being read. The file is open from the first frame that is asked for, until
-    nobody can ask for another."""
+    """A place at which a film that is known is being read. The file is open from the first frame that is asked for,
+    until nobody can ask for another."""
 
-    def __init__(self, film: Film, path: Path) -> None:
+    def __init__(self, film: _Film, path: Path) -> None:
         self._film, self._path = film, path
         self._video: cv2.VideoCapture | None = None
         self._next = 0  # number of the frame that comes next
@@ -120,7 +173,7 @@ class _Reading:
         """Go to some frame before this one, if the file can be read from there."""
         video = self._video or self._begin()
         video.set(cv2.CAP_PROP_POS_MSEC, self._film.time(number - 1) / 1e6)
-        there = self._film.number_at(told(video)) if video.grab() else None
+        there = self._film.number_at(_grabbed_ns(video)) if video.grab() else None
         if there is None or there >= number:
             self._film.jumps = False
             self._begin()
@@ -159,7 +212,7 @@ def opened(path: Path) -> cv2.VideoCapture:
     return video
 
 
-def told(video: cv2.VideoCapture) -> int:
+def _grabbed_ns(video: cv2.VideoCapture) -> int:
     """The time of the frame that was grabbed last, as the file has it, ns; -1: it has none."""
     ms = video.get(cv2.CAP_PROP_POS_MSEC)
     return round(ms * 1e6) if abs(ms) < 5e12 else -1  # in 64 bits
@@ -179,58 +232,3 @@ def _unpacked(frame: NDArray[np.uint8] | None) -> NDArray[np.uint8]:
     if frame is None:
         raise ValueError("the frame cannot be unpacked")
     return cv2.cvtColor(frame, cv2.COLOR_BGR2RGB).astype(np.uint8, copy=False)
-
-
-VIDEOS = (".mp4", ".avi", ".mkv", ".mov", ".webm", ".m4v", ".mpg", ".mpeg")
-_FIRST_BYTES = (b"RIFF", b"\x1aE\xdf\xa3", b"\x00\x00\x01\xba", b"\x00\x00\x01\xb3")
-_BOXES = (b"ftyp", b"moov", b"mdat", b"wide", b"free", b"skip")
-
-
-def open_video(path: Path) -> StreamedRecording:
-    """Frames have the times that the file gives them. ValueError: it is no video, or nothing in it can be read."""
-    _require_video(path)
-    beside = path.with_suffix(".csv")
-    table = Table(beside) if beside.is_file() else None
-    if table is not None:
-        table.survey()
-    if table is not None and "time" not in table.columns:
-        raise ValueError(f"{beside.name}: line 1: a video's CSV needs a column 'time_s', since the video's start")
-    uses = (f"camera: {plain(path.name)}", *(() if table is None else table.uses))
-    name = "video" if table is None else "video with CSV"
-    return StreamedRecording(path.name, name, partial(_sensed, Film(path), table), uses=uses)
-
-
-def _require_video(path: Path) -> None:
-    with open_whole(path) as file:
-        first = file.read(12)
-    if not (first.startswith(_FIRST_BYTES) or first[4:8] in _BOXES):
-        raise ValueError(f"{path.name}: not a video that can be read; expected MP4, AVI, MKV or MPEG")
-
-
-def _sensed(film: Film, table: Table | None, problems: Problems) -> Iterator[Sensed]:
-    """Frames and rows in the order of their times."""
-    rows = iter(()) if table is None else _rows(table, problems)
-    row = next(rows, None)
-    for frame in film.frames(problems):
-        while row is not None and row.time_ns <= frame.time_ns:
-            yield row
-            row = next(rows, None)
-        yield frame
-    if row is not None:  # covers the last frames, too
-        yield row
-
-
-def _rows(table: Table, problems: Problems) -> Iterator[Sensed]:
-    """Times since the video's start; those since 1970 begin with it."""
-    rates, first = Rates(), None
-    for number, cells in table.rows(problems):
-        where = table.where(number)
-        try:
-            time = table.time_ns(cells)
-            if time is None:
-                raise ValueError("it has no time")
-            if first is None:
-                first = time if time > 10**17 else 0
-            yield table.sensed(cells, time - first, where, rates, None)
-        except ValueError as error:
-            problems.add("lines left out", where, f"left out: {error}")

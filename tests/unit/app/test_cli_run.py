@@ -12,14 +12,13 @@ from typing import Any
 
 import pytest
 
-from app import engine_thread
+from app import engine_thread, kept_brains
 from app.cli import beginnings, serving
 from app.cli import command_line as cli
 from app.cli.run import run_with_trial
 from app.cli.serving import Serving
 from app.config import Config
 from app.engine.engine import Engine
-from app.kept_brains import keeper as brain_keeper
 from app.runs.folder import runs_folder
 from app.time_machine import PastRoom
 from app.trials.experiment import find_experiment
@@ -27,7 +26,7 @@ from sim2d import World
 from tests.patience import PATIENCE_S
 from web.http import server
 from web.http.class_door import Classroom
-from web.viewer import viewers
+from web.viewer import viewer
 
 from .engines import an_engine
 from .sessions import OFFICE
@@ -49,9 +48,9 @@ class Doubles:
         monkeypatch.setattr("app.startup.compiling.Compiling", partial(CompilingDouble, self))
         monkeypatch.setattr(engine_thread, "EngineThread", partial(EngineDouble, self))
         monkeypatch.setattr(server, "Dashboard", partial(DashboardDouble, self))
-        monkeypatch.setattr(brain_keeper.BrainKeeper, "start", lambda _self: None)
-        monkeypatch.setattr(brain_keeper.BrainKeeper, "stop", lambda _self: None)
-        monkeypatch.setattr(viewers, "Viewers", lambda *_: "viewers")
+        monkeypatch.setattr(kept_brains.BrainKeeper, "start", lambda _self: None)
+        monkeypatch.setattr(kept_brains.BrainKeeper, "stop", lambda _self: None)
+        monkeypatch.setattr(viewer, "Viewers", lambda *_: "viewers")
         monkeypatch.setattr("webbrowser.open", lambda url: self.log.append(f"opens {url}"))
 
     def begun(self) -> tuple[Engine, dict[str, Any]]:

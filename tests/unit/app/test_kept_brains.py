@@ -12,10 +12,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from app import kept_brains
 from app.cli import command_line as cli
 from app.engine_thread import EngineThread
 from app.kept_brains import MOST_KEPT, About, BrainKeeper, folder, keep, newest
-from app.kept_brains import keeper as brain_keeper
 from disk import archive, encode, state_codec
 from ratslam_core import Odometry, RatSlam, load_brain
 from tests.patience import PATIENCE_S
@@ -32,7 +32,7 @@ Start = Callable[..., EngineThread]
 @pytest.fixture(autouse=True)
 def brains(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setenv("RATSLAM_BRAINS", str(tmp_path / "brains"))
-    monkeypatch.setattr(brain_keeper, "LEAST_S", 1.0)
+    monkeypatch.setattr(kept_brains, "LEAST_S", 1.0)
     return folder()
 
 
@@ -177,7 +177,7 @@ def test_leaving_keeps_it_once_more_and_waits_neither_for_ever_nor_with_the_engi
 ) -> None:
     """Until the brain is read the engine goes on. It is written when the engine has ended, which makes it quicker."""
     engine, keeper = a_keeper(start)
-    monkeypatch.setattr(brain_keeper, "LEAVING_S", PATIENCE_S)
+    monkeypatch.setattr(kept_brains, "LEAVING_S", PATIENCE_S)
     keeper.start()
     keeper.stop()
     assert len(list(brains.iterdir())) == 1
@@ -188,18 +188,18 @@ def test_leaving_keeps_it_once_more_and_waits_neither_for_ever_nor_with_the_engi
         assert over.wait(PATIENCE_S)
         kept.release()
 
-    monkeypatch.setattr(brain_keeper, "keep", slowly)
+    monkeypatch.setattr(kept_brains, "keep", slowly)
     keepers = [BrainKeeper(engine.latest, engine.submit) for _ in range(2)]
     for keeper in keepers:
         keeper.start()
         keeper.leave()
-    monkeypatch.setattr(brain_keeper, "LEAVING_S", 0.05)
+    monkeypatch.setattr(kept_brains, "LEAVING_S", 0.05)
     keepers[0].stop()
     assert "cannot be written in time; the one kept last stays" in capsys.readouterr().err
     engine.stop()
     assert not kept.acquire(blocking=False)
     over.set()
-    monkeypatch.setattr(brain_keeper, "LEAVING_S", PATIENCE_S)
+    monkeypatch.setattr(kept_brains, "LEAVING_S", PATIENCE_S)
     for keeper in keepers:
         keeper.stop()
         assert kept.acquire(blocking=False)

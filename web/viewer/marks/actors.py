@@ -1,8 +1,5 @@
-"""What moves and changes in the office, in 3-D: leaves of doors, boxes, people, lamps and their light, and daylight.
-
-Handles are moved, not made anew.
-
-All people of the office as one batch: handles for each of fifty people would need six hundred messages a second.
+"""What moves and changes in the office, in 3-D: leaves of doors, boxes, people, lamps and their light, and daylight. Handles are
+moved, not made anew.
 """
 
 from __future__ import annotations
@@ -21,87 +18,23 @@ from web.viewer.primitives import meshes
 from web.viewer.primitives.labels import add_mesh
 from web.viewer.primitives.palette import Palette, Rgb, mix
 
-HEAD = (0.62, 0.8, 1.0)  # shares of a person's height: shoulders, chin, top
-AWAY = (0.0, 0.0, -50.0)  # far below the plates
-
-
-class Crowd:
-    """The batch has a place for each person; the places of people who have left are far below the plates."""
-
-    def __init__(self, scene: viser.SceneApi, palette: Palette, name: str) -> None:
-        self._scene, self._palette, self._name = scene, palette, name
-        self._handle: viser.BatchedMeshHandle | None = None
-        self._places = 0
-        self._shown: tuple[bytes, ...] = ()
-
-    def show(self, people: NDArray[np.floating], rgb: NDArray[np.uint8], fit: OfficeFit) -> None:
-        """people: (n, 5) x, y, heading, radius, height, as in `LivingLayer`. Only what has changed is sent."""
-        if len(people) > self._places:
-            self._make(len(people))
-        if self._handle is None:
-            return
-        n, rows = len(people), np.asarray(people, np.float64).reshape(-1, 5)
-        at, sizes, turns = (
-            np.tile(np.array(AWAY, np.float32), (self._places, 1)),
-            np.ones((self._places, 3)),
-            np.zeros(self._places),
-        )
-        at[:n, :2], at[:n, 2] = fit.to_plate(rows[:, :2]), 0.0
-        sizes[:n, :2] = np.maximum(rows[:, 3:4] * fit.scale, 0.07)
-        sizes[:n, 2] = rows[:, 4] * METRE_HIGH * max(fit.relief, 0.5)
-        turns[:n] = 0.5 * rows[:, 2]
-        colours = np.zeros((self._places, 3), np.uint8)
-        if n:
-            colours[:n] = self._palette.batched(rgb)
-        names = ("batched_positions", "batched_scales", "batched_wxyzs", "batched_colors")
-        wxyz = np.column_stack([np.cos(turns), 0 * turns, 0 * turns, np.sin(turns)])
-        arrays = (at, sizes.astype(np.float32), wxyz.astype(np.float32), colours)
-        now = tuple(array.tobytes() for array in arrays)
-        for name, array, is_now, was in zip(names, arrays, now, self._shown or now, strict=True):
-            if is_now != was or not self._shown:
-                setattr(self._handle, name, array)
-        self._shown = now
-        if self._handle.visible != bool(n):
-            self._handle.visible = bool(n)
-
-    def _make(self, places: int) -> None:
-        self._places, self._shown = places, ()
-        self._handle = self._scene.add_batched_meshes_simple(
-            self._name,
-            *_figure(),
-            batched_wxyzs=np.tile(np.array((1, 0, 0, 0), np.float32), (places, 1)),
-            batched_positions=np.tile(np.array(AWAY, np.float32), (places, 1)),
-            batched_scales=np.ones((places, 3), np.float32),
-            batched_colors=np.zeros((places, 3), np.uint8),
-            lod="off",
-            cast_shadow=False,
-            receive_shadow=False,
-        )
-
-
-def _figure() -> meshes.Mesh:
-    """A person of radius 1 and height 1 who looks along +x."""
-    circle = meshes.circle(1.0, corners=20)
-    return meshes.joined(
-        meshes.extruded(circle * (0.7, 1.0), 0.0, HEAD[0]),
-        meshes.extruded(circle * 0.5, HEAD[0] + 0.02, HEAD[2]),
-        meshes.extruded(
-            meshes.rounded_rectangle(0.2, 0.3, 0.08, 4, centre=(0.55, 0.0)), HEAD[1] - 0.06, HEAD[1] + 0.06
-        ),
-    )
-
-
 LEAF_THICK, LEAF_HIGH, LAMP_Z = 0.07, 2.05 * METRE_HIGH, 0.74
 LAMP_RADIUS = 0.09
 LIT: Rgb = (255, 236, 170)
 NIGHT: Rgb = (4, 8, 20)  # laid over the floor
 SHINE, POOL, DARKEST = 0.16, 0.6, 0.75  # opacity of a lamp's light; its share of the lamp's reach; opacity of the night
 POOL_Z, DARK_Z = 0.026, 0.022  # just above the floor
-LATE = np.array(
-    (0.0, -20.0, 16.0), np.float32
-)  # transparent meshes are drawn by their origin: the one nearest to the eye last
+# transparent meshes are drawn by the distance of their origin: the nearest to the eye last
+LATE: NDArray[np.float32] = np.array((0.0, -20.0, 16.0), np.float32)
 DOOR_RGB: Rgb = (150, 104, 62)
 REACH = 0.35  # plate units: a click this near to a leaf means the door
+_SQUARE = np.array([(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)])
+_MESHES = {
+    "door": meshes.extruded(_SQUARE, 0.0, 1.0),
+    "box": meshes.extruded(_SQUARE, 0.0, 1.0),
+    "lamp": meshes.extruded(meshes.circle(1.0), 0.0, 1.0),
+}
+_NO_ROWS = (np.zeros((0, 4)), np.zeros((0, 6)), np.zeros((0, 5)), np.zeros((0, 4)))
 
 
 class LivingThings:
@@ -111,27 +44,17 @@ class LivingThings:
         self._scene, self._palette, self._root = scene, palette, root
         self._handles: dict[str, list[_Thing]] = {"door": [], "box": [], "lamp": []}
         self._crowd = Crowd(scene, palette, f"{root}/people")
-        self._pools = add_mesh(
-            scene, f"{root}/pools", meshes.NOTHING, LIT, opacity=SHINE, position=tuple(LATE.tolist()), visible=False
-        )
-        self._dark = add_mesh(
-            scene,
-            f"{root}/dark",
-            meshes.NOTHING,
-            NIGHT,
-            opacity=0.5,
-            position=tuple(LATE.tolist()),
-            visible=False,
-        )
+        hidden = {"position": tuple(LATE.tolist()), "visible": False}
+        self._pools = add_mesh(scene, f"{root}/pools", meshes.NOTHING, LIT, opacity=SHINE, **hidden)
+        self._dark = add_mesh(scene, f"{root}/dark", meshes.NOTHING, NIGHT, opacity=0.5, **hidden)
         self._lit: tuple[Any, ...] = ()
         self._dimmed: tuple[Any, ...] = ()
         self.layer: LivingLayer | None = None
 
     def show(self, layer: LivingLayer | None, fit: OfficeFit) -> None:
         self.layer = layer
-        doors, boxes, people, lamps = (
-            _NO_ROWS if layer is None else (layer.doors, layer.boxes, layer.people, layer.lamps)
-        )
+        rows = _NO_ROWS if layer is None else (layer.doors, layer.boxes, layer.people, layer.lamps)
+        doors, boxes, people, lamps = rows
         self._crowd.show(people, np.zeros((0, 3), np.uint8) if layer is None else layer.people_rgb, fit)
         for i, leaf in enumerate(doors):
             self._door(self._handle("door", i, DOOR_RGB), leaf, fit)
@@ -189,8 +112,6 @@ class LivingThings:
             return None
         return self.layer.door_names[nearest], not bool(self.layer.door_wanted[nearest])
 
-    # ------------------------------------------------------------ one thing each
-
     def _door(self, thing: _Thing, leaf: NDArray[np.floating], fit: OfficeFit) -> None:
         x1, y1, x2, y2 = (float(v) for v in leaf)
         size = (math.hypot(x2 - x1, y2 - y1) * fit.scale, LEAF_THICK * fit.relief, LEAF_HIGH * fit.relief)
@@ -200,8 +121,6 @@ class LivingThings:
         x, y, width, depth, height, angle = (float(v) for v in box)
         size = (width * fit.scale, depth * fit.scale, height * METRE_HIGH * fit.relief)
         self._move(thing, fit, x, y, 0.0, angle, size)
-
-    # ------------------------------------------------------------ handles
 
     def _handle(self, kind: str, i: int, colour: Rgb) -> _Thing:
         things, paint = self._handles[kind], self._palette.lit(colour)
@@ -248,10 +167,67 @@ def _rgb(row: NDArray[np.uint8]) -> Rgb:
     return int(row[0]), int(row[1]), int(row[2])
 
 
-_SQUARE = np.array([(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)])
-_MESHES = {
-    "door": meshes.extruded(_SQUARE, 0.0, 1.0),
-    "box": meshes.extruded(_SQUARE, 0.0, 1.0),
-    "lamp": meshes.extruded(meshes.circle(1.0), 0.0, 1.0),
-}
-_NO_ROWS = (np.zeros((0, 4)), np.zeros((0, 6)), np.zeros((0, 5)), np.zeros((0, 4)))
+HEAD = (0.62, 0.8, 1.0)  # shares of a person's height: shoulders, chin, top
+AWAY = (0.0, 0.0, -50.0)  # far below the plates
+
+
+class Crowd:
+    """All people as one batch: handles for each of fifty would need six hundred messages a second. It has a place for each
+    person; the places of people who have left are far below the plates."""
+
+    def __init__(self, scene: viser.SceneApi, palette: Palette, name: str) -> None:
+        self._scene, self._palette, self._name = scene, palette, name
+        self._handle: viser.BatchedMeshHandle | None = None
+        self._places = 0
+        self._shown: tuple[bytes, ...] = ()
+
+    def show(self, people: NDArray[np.floating], rgb: NDArray[np.uint8], fit: OfficeFit) -> None:
+        """people: (n, 5) x, y, heading, radius, height, as in `LivingLayer`. Only what has changed is sent."""
+        if len(people) > self._places:
+            self._make(len(people))
+        if self._handle is None:
+            return
+        n, rows = len(people), np.asarray(people, np.float64).reshape(-1, 5)
+        at = np.tile(np.array(AWAY, np.float32), (self._places, 1))
+        sizes, turns = np.ones((self._places, 3)), np.zeros(self._places)
+        at[:n, :2], at[:n, 2] = fit.to_plate(rows[:, :2]), 0.0
+        sizes[:n, :2] = np.maximum(rows[:, 3:4] * fit.scale, 0.07)
+        sizes[:n, 2] = rows[:, 4] * METRE_HIGH * max(fit.relief, 0.5)
+        turns[:n] = 0.5 * rows[:, 2]
+        colours = np.zeros((self._places, 3), np.uint8)
+        if n:
+            colours[:n] = self._palette.batched(rgb)
+        names = ("batched_positions", "batched_scales", "batched_wxyzs", "batched_colors")
+        wxyz = np.column_stack([np.cos(turns), 0 * turns, 0 * turns, np.sin(turns)])
+        arrays = (at, sizes.astype(np.float32), wxyz.astype(np.float32), colours)
+        now = tuple(array.tobytes() for array in arrays)
+        for name, array, is_now, was in zip(names, arrays, now, self._shown or now, strict=True):
+            if is_now != was or not self._shown:
+                setattr(self._handle, name, array)
+        self._shown = now
+        if self._handle.visible != bool(n):
+            self._handle.visible = bool(n)
+
+    def _make(self, places: int) -> None:
+        self._places, self._shown = places, ()
+        self._handle = self._scene.add_batched_meshes_simple(
+            self._name,
+            *_figure(),
+            batched_wxyzs=np.tile(np.array((1, 0, 0, 0), np.float32), (places, 1)),
+            batched_positions=np.tile(np.array(AWAY, np.float32), (places, 1)),
+            batched_scales=np.ones((places, 3), np.float32),
+            batched_colors=np.zeros((places, 3), np.uint8),
+            lod="off",
+            cast_shadow=False,
+            receive_shadow=False,
+        )
+
+
+def _figure() -> meshes.Mesh:
+    """A person of radius 1 and height 1 who looks along +x."""
+    circle, nose = meshes.circle(1.0, corners=20), meshes.rounded_rectangle(0.2, 0.3, 0.08, 4, centre=(0.55, 0.0))
+    return meshes.joined(
+        meshes.extruded(circle * (0.7, 1.0), 0.0, HEAD[0]),
+        meshes.extruded(circle * 0.5, HEAD[0] + 0.02, HEAD[2]),
+        meshes.extruded(nose, HEAD[1] - 0.06, HEAD[1] + 0.06),
+    )

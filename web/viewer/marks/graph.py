@@ -1,9 +1,7 @@
-"""The map's links as lines, some hundred in each scene node. Only nodes in which a line has moved are sent again.
+"""The map's pose graph: its links as lines, its experiences as dots, and where loops were closed.
 
-The map's experiences as dots, some hundred in each scene node. Only nodes in which a dot has moved or changed its colour are
-sent again, so a large map costs what moves in it, and a new experience costs no more in it than in a small one.
-
-Where loops were closed: a ring at the experience that was met again; the newest says how far it moved the map.
+Lines and dots lie some hundred in each scene node. Only nodes in which one has moved or changed its colour are sent again, so a
+large map costs what moves in it, and a new experience costs no more in it than in a small one.
 """
 
 from __future__ import annotations
@@ -31,15 +29,14 @@ class Links:
         pairs = np.unique(np.sort(links.reshape(-1, 2), 1)[:, ::-1], axis=0)
         lines = places[pairs].astype(np.float32)
         for k in range(0, max(len(lines), len(self.nodes) * LINES_A_NODE), LINES_A_NODE):
-            self._node(k // LINES_A_NODE).points = meshes.some(lines[k : k + LINES_A_NODE], LINES_A_NODE)
+            if k == len(self.nodes) * LINES_A_NODE:
+                self._add()
+            self.nodes[k // LINES_A_NODE].points = meshes.some(lines[k : k + LINES_A_NODE], LINES_A_NODE)
 
-    def _node(self, k: int) -> viser.LineSegmentsHandle:
-        if k == len(self.nodes):
-            line = self._scene.add_line_segments(
-                f"{self._name}_{k}", meshes.NOWHERE, self._colour, thickness=PX, thickness_units="screen"
-            )
-            self.nodes.append(line)
-        return self.nodes[k]
+    def _add(self) -> None:
+        name = f"{self._name}_{len(self.nodes)}"
+        line = self._scene.add_line_segments(name, meshes.NOWHERE, self._colour, thickness=PX, thickness_units="screen")
+        self.nodes.append(line)
 
 
 DOTS_A_NODE = 256
@@ -70,16 +67,12 @@ class Nodes:
             cloud.colors = painted
 
     def _add(self) -> None:
-        self.clouds.append(
-            self._scene.add_point_cloud(
-                f"{self._name}_{len(self.clouds)}",
-                np.full((DOTS_A_NODE, 3), FAR, np.float32),
-                np.zeros((DOTS_A_NODE, 3), np.uint8),
-                point_size=self._size,
-                point_shape="circle",
-                point_shading="flat",
-            )
+        name, far = f"{self._name}_{len(self.clouds)}", np.full((DOTS_A_NODE, 3), FAR, np.float32)
+        black, size = np.zeros((DOTS_A_NODE, 3), np.uint8), self._size
+        cloud = self._scene.add_point_cloud(
+            name, far, black, point_size=size, point_shape="circle", point_shading="flat"
         )
+        self.clouds.append(cloud)
 
 
 RING, WIDTH, Z = 0.2, 0.07, 0.11
@@ -91,6 +84,8 @@ REACH = 0.3  # plate units: a click this near to a ring means it
 
 
 class ClosureMarks:
+    """A ring at the experience that was met again at each loop closure; the newest says how far it moved the map."""
+
     def __init__(self, scene: viser.SceneApi, palette: Palette, name: str, room: LabelRoom) -> None:
         self._ink, colour = palette.sheet, palette.packets[3]
         self._label_m = LABEL_M * palette.letters

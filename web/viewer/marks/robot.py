@@ -1,9 +1,4 @@
-"""The robot: an orange cylinder with a white turret, a dark camera and two wheels, drawn a quarter larger than it is.
-
-A path on a floor whose older parts fade into it.
-
-The robot that believes its wheels alone, as a pale robot with its fading, dashed path and its name.
-"""
+"""The robot with the path that it leaves on the floor, and its ghost that believes the wheels alone."""
 
 from __future__ import annotations
 
@@ -23,6 +18,8 @@ SMALLEST = 0.19  # plate units: stays visible in large worlds, however small the
 
 
 class RobotModel:
+    """An orange cylinder with a white turret, a dark camera and two wheels, drawn a quarter larger than it is."""
+
     def __init__(self, scene: viser.SceneApi, palette: Palette, name: str, plain: Rgb | None = None) -> None:
         """plain: one colour for all of it, and then it is hidden at first."""
         self.radius = 0.25
@@ -65,6 +62,8 @@ RISE = 0.015  # where the path crosses itself, the newer part is on top
 
 
 class Trail:
+    """A path on a floor whose older parts fade into it."""
+
     def __init__(
         self, scene: viser.SceneApi, palette: Palette, name: str, colour: Rgb, thickness: float, dashed: bool = False
     ) -> None:
@@ -104,12 +103,9 @@ APART_M = 0.5  # nearer to the robot it would only hide it
 LONGEST = 1.0  # plate units: a longer step is no driving
 
 
-def pale(palette: Palette, colour: Rgb, share: float = PALE) -> Rgb:
-    """A colour as a ghost has it."""
-    return mix(colour, palette.floor, share)
-
-
 class GhostRobot:
+    """The robot that believes its wheels alone: a pale robot with its fading, dashed path and its name."""
+
     def __init__(
         self, scene: viser.SceneApi, palette: Palette, name: str, half: tuple[float, float], room: LabelRoom,
         radius: float = 0.25,
@@ -143,6 +139,11 @@ class GhostRobot:
         self.robot.frame.visible = False
         self._label.hide()
         self._trail.hide()
+
+
+def pale(palette: Palette, colour: Rgb, share: float = PALE) -> Rgb:
+    """A colour as a ghost has it."""
+    return mix(colour, palette.floor, share)
 
 
 def words_of(off_m: float) -> str:

@@ -1,8 +1,8 @@
-"""The viewer's colours: one colour for one concept, on every plate, in the dark and in the light theme.
+"""The viewer's colours: one colour for one concept, on every plate, in the dark and in the light theme; and which paint shows
+as a wanted colour.
 
-Which paint shows as a wanted colour: viser lights meshes, and then applies a film curve to everything but images.
-
-The curve is three.js' ACESFilmicToneMapping (S. Hill's fit of the Academy's RRT and ODT), inverted here.
+viser lights meshes, and then applies a film curve to everything but images. The curve is three.js' ACESFilmicToneMapping
+(S. Hill's fit of the Academy's RRT and ODT), inverted here.
 """
 
 from __future__ import annotations
@@ -15,11 +15,32 @@ from numpy.typing import ArrayLike, NDArray
 from web.themes import Theme
 
 Array = NDArray[np.float64]
+Rgb = tuple[int, int, int]
+WHITE: Rgb = (255, 255, 255)
+KEY_AT, RIM_AT = (-8.0, -14.0, 20.0), (12.0, 10.0, 6.0)
+RIM_LIGHT, RIM_TINT = 1.2, (170, 200, 255)
+UP = (0.0, 0.0, 1.0)
+LARGE = 1.4  # letters for the last row, against the usual ones
 EXPOSURE = 1 / 0.6
 GLOSS = 0.0066  # the share of the light that any mesh reflects, whatever its paint (measured)
 BRIGHTEST = 0.94  # of what a screen can show; white itself would need infinite light
 _INTO = np.array([(0.59719, 0.35458, 0.04823), (0.07600, 0.90834, 0.01566), (0.02840, 0.13383, 0.83777)])
 _OUT_OF = np.array([(1.60475, -0.53108, -0.07367), (-0.10208, 1.10813, -0.00605), (-0.00327, -0.07276, 1.07602)])
+# viridis at 20 evenly spaced places (van der Walt and Smith 2015, CC0)
+_VIRIDIS = [
+    "440154", "481467", "482576", "453781", "404688", "39558C", "33638D", "2D718E", "287D8E", "238A8D",
+    "1F968B", "20A386", "29AF7F", "3CBC75", "56C667", "74D055", "94D840", "B8DE29", "DCE318", "FDE725",
+]  # fmt: skip
+
+
+def rgb(colour: str) -> Rgb:
+    """`"#RRGGBB"` as three bytes."""
+    return int(colour[1:3], 16), int(colour[3:5], 16), int(colour[5:7], 16)
+
+
+def mix(a: Rgb, b: Rgb, share: float) -> Rgb:
+    """`share` of the way from `a` to `b`."""
+    return tuple(round(p + (q - p) * share) for p, q in zip(a, b, strict=True))  # type: ignore[return-value]
 
 
 def to_linear(colour: ArrayLike) -> Array:
@@ -60,61 +81,15 @@ def vertex_paint(colour: ArrayLike) -> NDArray[np.uint8]:
     return np.rint(np.clip(before_film(to_linear(colour)), 0, 1) * 255).astype(np.uint8)
 
 
-def lit_paint(colour: ArrayLike, light: ArrayLike) -> NDArray[np.uint8]:
+def _lit_paint(colour: ArrayLike, light: ArrayLike) -> NDArray[np.uint8]:
     """sRGB paint that shows as `colour` (..., 3) on a mesh that `light` falls on."""
     return to_srgb(before_film(to_linear(colour)) / np.asarray(light) - GLOSS)
 
 
-def linear_paint(colour: ArrayLike, light: ArrayLike) -> NDArray[np.uint8]:
+def _linear_paint(colour: ArrayLike, light: ArrayLike) -> NDArray[np.uint8]:
     """The same for batched meshes, whose bytes are taken as linear light."""
     share = before_film(to_linear(colour)) / np.asarray(light) - GLOSS
     return np.rint(np.clip(share, 0, 1) * 255).astype(np.uint8)
-
-
-Rgb = tuple[int, int, int]
-
-OKABE_ITO = ("#E69F00", "#56B4E9", "#009E73", "#F0E442", "#0072B2", "#D55E00", "#CC79A7")
-
-# viridis at 20 evenly spaced places (van der Walt and Smith 2015, CC0)
-_VIRIDIS = [
-    "440154",
-    "481467",
-    "482576",
-    "453781",
-    "404688",
-    "39558C",
-    "33638D",
-    "2D718E",
-    "287D8E",
-    "238A8D",
-    "1F968B",
-    "20A386",
-    "29AF7F",
-    "3CBC75",
-    "56C667",
-    "74D055",
-    "94D840",
-    "B8DE29",
-    "DCE318",
-    "FDE725",
-]
-
-
-WHITE: Rgb = (255, 255, 255)
-KEY_AT, RIM_AT = (-8.0, -14.0, 20.0), (12.0, 10.0, 6.0)
-RIM_LIGHT, RIM_TINT = 1.2, (170, 200, 255)
-UP = (0.0, 0.0, 1.0)
-LARGE = 1.4  # letters for the last row, against the usual ones
-
-
-def rgb(colour: str) -> Rgb:
-    """`"#RRGGBB"` as three bytes."""
-    return int(colour[1:3], 16), int(colour[3:5], 16), int(colour[5:7], 16)
-
-
-def mix(a: Rgb, b: Rgb, share: float) -> Rgb:
-    """`share` of the way from `a` to `b`."""
-    return tuple(round(p + (q - p) * share) for p, q in zip(a, b, strict=True))  # type: ignore[return-value]
 
 
 @dataclass(frozen=True)
@@ -180,12 +155,12 @@ class Palette:
 
     def lit(self, colour: Rgb, normal: tuple[float, float, float] = UP) -> Rgb:
         """The paint that shows as `colour` on a mesh that faces `normal`."""
-        red, green, blue = lit_paint(colour, self.light_on(normal)).tolist()
+        red, green, blue = _lit_paint(colour, self.light_on(normal)).tolist()
         return red, green, blue
 
     def batched(self, colours: ArrayLike) -> NDArray[np.uint8]:
         """(n, 3) paints that show as `colours` on the upper sides of batched meshes."""
-        return linear_paint(colours, self.light_on())
+        return _linear_paint(colours, self.light_on())
 
     def drawn(self, colour: Rgb) -> Rgb:
         """The paint that shows as `colour` on a line."""

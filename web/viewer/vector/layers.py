@@ -1,10 +1,5 @@
-"""What lies on the floors of a sheet: where the sonars met something, and the goal memory's times. A pixel is a cell.
-
-What people alone know, on a sheet: the true walls under the map, the wheels' ghost, error and doubt, closed loops.
-
-What is inspected, on a sheet: always in the colour of text, as on the stage.
-
-Names of places on a sheet, and what a lesson has there: what happened, where it happened, and what was predicted.
+"""What lies over the plates, on a sheet: where the sonars met something, the goal memory's times, what people alone know, what is
+inspected, names of places, and what a lesson has there.
 """
 
 from __future__ import annotations
@@ -31,6 +26,8 @@ from web.viewer.primitives.palette import Palette, mix
 from web.viewer.vector.sheet import Entry, Sheet
 from web.viewer.vector.subject import Subject
 
+Points = NDArray[np.float64]
+
 
 def draw_occupancy(sheet: Sheet, subject: Subject, fit: MapFit) -> list[Entry]:
     """Below the map, bent and turned with it."""
@@ -47,7 +44,7 @@ def draw_occupancy(sheet: Sheet, subject: Subject, fit: MapFit) -> list[Entry]:
 
 
 def draw_beneath(sheet: Sheet, subject: Subject) -> list[Entry]:
-    """Below the pose cells: the occupancy in their frame, and over it the times to the goal with their scale."""
+    """Below the pose cells, a pixel a cell: the occupancy in their frame, and over it the times to the goal with their scale."""
     beneath, goal, palette = subject.overlaid.beneath, subject.overlaid.goal_memory, subject.palette
     _, n_y, n_x = subject.snapshot.pose_cells.shape
     bare = colours = _floor(n_y, n_x, palette)
@@ -80,7 +77,6 @@ FAINT = 0.25
 STEP_PX = 5.0
 CLOSURE_RING = 9.0  # pixels
 LEAST_PX = 14.0  # a shorter line would lie beneath the arrow
-Points = NDArray[np.float64]
 
 
 def draw_walls(sheet: Sheet, subject: Subject, fit: MapFit) -> list[Entry]:
@@ -120,9 +116,8 @@ def draw_ghost(sheet: Sheet, palette: Palette, there: Pose, off_m: float, size: 
 
 
 def ghost_entry(shown: Ghost | None, palette: Palette) -> list[Entry]:
-    return (
-        [] if shown is None else [("dashes", robot.pale(palette, palette.robot), "as the wheels alone would have it")]
-    )
+    colour = robot.pale(palette, palette.robot)
+    return [] if shown is None else [("dashes", colour, "as the wheels alone would have it")]
 
 
 def draw_error(sheet: Sheet, subject: Subject, fit: MapFit) -> list[Entry]:
@@ -151,9 +146,8 @@ def draw_spread(sheet: Sheet, subject: Subject, fit: MapFit) -> list[Entry]:
     here, turn = subject.snapshot.estimate, spread.turn_rad + fit.turn_rad
     c, s = math.cos(turn), math.sin(turn)
     axes = np.array([spread.along_m, spread.across_m]) * doubt.SIGMAS * fit.scale
-    around = meshes.circle(1.0, corners=48) * axes @ np.array([(c, s), (-s, c)]) + fit.to_plate(
-        np.array([[here.x, here.y]])
-    )
+    middle = fit.to_plate(np.array([[here.x, here.y]]))
+    around = meshes.circle(1.0, corners=48) * axes @ np.array([(c, s), (-s, c)]) + middle
     sheet.line(np.vstack([around, around[:1]]), subject.palette.robot, 2)
     return [("oval", subject.palette.robot, "[ours] its doubt: two standard deviations")]
 
@@ -178,9 +172,8 @@ MOST_LETTERS = 72  # in the legend
 
 
 def mark_on_map(sheet: Sheet, subject: Subject, fit: MapFit, places: Points) -> list[Entry]:
-    """A ring and a name at the experience, with its links bright; small rings at all that belong to a view or a cell.
-
-    places: (n, 2) of all experiences on the sheet."""
+    """What is inspected, in the colour of text, as on the stage: a ring and a name at the experience, with its links bright;
+    small rings at all that belong to a view or a cell. places: (n, 2) of all experiences on the sheet."""
     report, palette = subject.overlaid.inspected, subject.palette
     if report is None:
         return []

@@ -1,8 +1,5 @@
-"""The office from above as a vector picture: walls, furniture, what lives in it, the robot, its path and senses, its ghost.
-
-What moves and changes in the office, on a sheet: the night, lamps and their light, doors, boxes, people.
-
-What the robot senses and tries in the office, on a sheet: its camera's view, its sonars' echoes, its candidate movements.
+"""The office from above as a vector picture: walls, furniture, what lives in it, and the robot with its path, what it senses and
+tries, and its ghost.
 """
 
 from __future__ import annotations
@@ -26,88 +23,7 @@ from web.viewer.vector.subject import Subject
 
 LAMP, LEAST = 6.0, 5.0  # pixels
 NOSE = 0.45  # share of a person's radius
-
-
-def draw_light(sheet: Sheet, layer: LivingLayer | None, bounds: tuple[float, float, float, float]) -> None:
-    """On the floor: the less daylight, the darker, but not below the lamps that shine."""
-    if layer is None:
-        return
-    x1, y1, x2, y2 = bounds
-    dark = DARKEST * (1.0 - min(max(layer.daylight, 0.0), 1.0))
-    pools = [meshes.circle(POOL * reach, (x, y)) for x, y, reach, on in layer.lamps.tolist() if on]
-    if dark > 0:
-        sheet.polygon([(x1, y1), (x2, y1), (x2, y2), (x1, y2)], NIGHT, opacity=dark, holes=pools)
-    for pool in pools:
-        sheet.polygon(pool, LIT, opacity=SHINE)
-
-
-def draw_living(sheet: Sheet, layer: LivingLayer | None) -> None:
-    if layer is None:
-        return
-    sheet.lines(layer.doors.reshape(-1, 2, 2), DOOR_RGB, 5.0)
-    for (x, y, width, depth, _, angle), rgb in zip(layer.boxes.tolist(), layer.box_rgb.tolist(), strict=True):
-        corners = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)]) * (width / 2, depth / 2)
-        c, s = np.cos(angle), np.sin(angle)
-        sheet.polygon(corners @ np.array([(c, s), (-s, c)]) + (x, y), tuple(rgb))
-    for (x, y, heading, radius, _), rgb in zip(layer.people.tolist(), layer.people_rgb.tolist(), strict=True):
-        size = max(radius * sheet.scale, LEAST)
-        sheet.dot((x, y), size, tuple(rgb), sheet.palette.text, edge=1.5)
-        ahead = size / sheet.scale * np.array([np.cos(heading), np.sin(heading)])
-        sheet.dot((np.array([x, y]) + ahead).tolist(), NOSE * size, tuple(rgb), sheet.palette.text, edge=1.5)
-    for x, y, _, on in layer.lamps.tolist():
-        sheet.dot((x, y), LAMP, LIT if on else unlit(sheet.palette), sheet.palette.rim, edge=1.5)
-
-
 ECHO = 4.0  # pixels
-
-
-def draw_view(sheet: Sheet, subject: Subject) -> list[Entry]:
-    world, truth, living, palette = (
-        subject.snapshot.world,
-        subject.snapshot.truth,
-        subject.snapshot.living,
-        subject.palette,
-    )
-    if world is None or truth is None or not world.is_office:
-        return []
-    leaves = np.zeros((0, 4)) if living is None else living.doors.astype(np.float64)
-    opaque = np.array([kind != "glass" for kind in world.wall_kind], bool)
-    walls = np.vstack([np.asarray(world.walls, np.float64)[opaque], leaves])
-    rim = fan_of_view(walls, truth, world.camera_fov_rad)
-    sheet.polygon(np.vstack([[(truth.x, truth.y)], rim]), palette.wedge, opacity=palette.wedge_opacity)
-    sheet.line([rim[0], (truth.x, truth.y), rim[-1]], palette.wedge, 1.5)
-    return [("area", mix(palette.floor, palette.wedge, palette.wedge_opacity), "what its camera sees")]
-
-
-def draw_sonar(sheet: Sheet, subject: Subject) -> list[Entry]:
-    world, truth, ranges_m = subject.snapshot.world, subject.snapshot.truth, subject.snapshot.senses.ranges_m
-    if world is None or truth is None or not world.is_office:
-        return []
-    heard = np.isfinite(ranges_m)
-    angles, reach = truth.heading_rad + world.sonar_angles_rad[heard], ranges_m[heard]
-    echoes = np.column_stack([truth.x + reach * np.cos(angles), truth.y + reach * np.sin(angles)])
-    sheet.lines([[(truth.x, truth.y), echo] for echo in echoes], subject.palette.sonar, 1.5)
-    for echo in echoes.tolist():
-        sheet.dot(echo, ECHO, subject.palette.sonar)
-    return [("line", subject.palette.sonar, "its sonars' echoes")] if len(echoes) else []
-
-
-def draw_movements(sheet: Sheet, subject: Subject, size: float) -> list[Entry]:
-    """size: of the robot, pixels."""
-    if subject.overlaid.movements is None:
-        return []
-    tried, palette = subject.overlaid.movements(), subject.palette
-    bright, grey = movements.shades(palette)
-    ways = [movements.arc_on_plate(tried, k, MapFit(1.0), size / sheet.scale) for k in range(len(tried.free))]
-    for k in movements.drawn_along(tried):
-        free = bool(tried.free[k])
-        sheet.line(ways[k], bright if free else grey, 1.2, dash="" if free else "4 3")
-    for way, free in zip(ways, tried.free.tolist(), strict=True):
-        sheet.dot(way[-1].tolist(), 1.8, bright if free else grey)
-    sheet.way(ways[tried.chosen], palette.robot, 4.5)
-    return [("line", bright, "movements it tries; dashed: an echo is too close; bold: it goes")]
-
-
 _WIDTHS = {"wall": 6.0, "partition": 4.0, "desk": 2.0, "glass": 2.0}
 JUMP_M = 1.2  # a kidnap leaves no line
 LEAST_ROOM_M, ROOM = 0.1, 0.014  # around the walls, the latter as a share of the office: for a robot at its edge
@@ -121,26 +37,25 @@ def draw_office(subject: Subject) -> str:
         raise ValueError("a recording without a true path has no office to be drawn")
     ghost = subject.judged.ghost
     _, told = OFFICE if world.is_office else TRUE_PATH
-    sheet = Sheet(
-        palette, world.title, told, _field(world, np.zeros((0, 2)) if ghost is None else wheels_path(ghost)[0])
-    )
+    field = _field(world, np.zeros((0, 2)) if ghost is None else wheels_path(ghost)[0])
+    sheet = Sheet(palette, world.title, told, field)
     size = max(9.0, 1.2 * world.robot_radius_m * sheet.scale)
     _draw_floor(sheet, world)
-    draw_light(sheet, snapshot.living, world.bounds)
+    _draw_light(sheet, snapshot.living, world.bounds)
     for rows, outline in solid_runs(world):
         kind = world.wall_kind[rows[0]]
         if kind != "glass":
             sheet.polygon(outline, palette.desk if kind == "desk" else palette.partition)
-    seen = draw_view(sheet, subject)
+    seen = _draw_view(sheet, subject)
     _draw_walls(sheet, world)
-    draw_living(sheet, snapshot.living)
+    _draw_living(sheet, snapshot.living)
     for part in _unbroken(np.asarray(snapshot.trail, np.float64), JUMP_M if world.is_office else np.inf):
         sheet.line(part, palette.true_path, 2.5, opacity=0.8)
     legend: list[Entry] = [("line", palette.true_path, "where it drove in the last two minutes"), *seen]
     if world.slow_zones:
         legend.append(("area", mix(palette.floor, palette.packets[0], SLOW), "floor on which it is slow"))
-    legend += draw_movements(sheet, subject, size)
-    legend += draw_sonar(sheet, subject)
+    legend += _draw_movements(sheet, subject, size)
+    legend += _draw_sonar(sheet, subject)
     if truth is not None:
         sheet.avoid((truth.x, truth.y), size)
     for place in snapshot.places[:MOST]:
@@ -178,6 +93,33 @@ def _draw_floor(sheet: Sheet, world: WorldDrawing) -> None:
         sheet.polygon(zone, sheet.palette.packets[0], opacity=SLOW)
 
 
+def _draw_light(sheet: Sheet, layer: LivingLayer | None, bounds: tuple[float, float, float, float]) -> None:
+    """On the floor: the less daylight, the darker, but not below the lamps that shine."""
+    if layer is None:
+        return
+    x1, y1, x2, y2 = bounds
+    dark = DARKEST * (1.0 - min(max(layer.daylight, 0.0), 1.0))
+    pools = [meshes.circle(POOL * reach, (x, y)) for x, y, reach, on in layer.lamps.tolist() if on]
+    if dark > 0:
+        sheet.polygon([(x1, y1), (x2, y1), (x2, y2), (x1, y2)], NIGHT, opacity=dark, holes=pools)
+    for pool in pools:
+        sheet.polygon(pool, LIT, opacity=SHINE)
+
+
+def _draw_view(sheet: Sheet, subject: Subject) -> list[Entry]:
+    world, truth = subject.snapshot.world, subject.snapshot.truth
+    living, palette = subject.snapshot.living, subject.palette
+    if world is None or truth is None or not world.is_office:
+        return []
+    leaves = np.zeros((0, 4)) if living is None else living.doors.astype(np.float64)
+    opaque = np.array([kind != "glass" for kind in world.wall_kind], bool)
+    walls = np.vstack([np.asarray(world.walls, np.float64)[opaque], leaves])
+    rim = fan_of_view(walls, truth, world.camera_fov_rad)
+    sheet.polygon(np.vstack([[(truth.x, truth.y)], rim]), palette.wedge, opacity=palette.wedge_opacity)
+    sheet.line([rim[0], (truth.x, truth.y), rim[-1]], palette.wedge, 1.5)
+    return [("area", mix(palette.floor, palette.wedge, palette.wedge_opacity), "what its camera sees")]
+
+
 def _draw_walls(sheet: Sheet, world: WorldDrawing) -> None:
     kinds = np.array(world.wall_kind)
     for kind in dict.fromkeys(world.wall_kind):
@@ -192,8 +134,54 @@ def _wall_colour(kind: str, palette: Palette) -> Rgb:
     return {"partition": palette.partition, "desk": palette.desk, "glass": palette.glass}.get(kind, palette.wall)
 
 
+def _draw_living(sheet: Sheet, layer: LivingLayer | None) -> None:
+    if layer is None:
+        return
+    sheet.lines(layer.doors.reshape(-1, 2, 2), DOOR_RGB, 5.0)
+    for (x, y, width, depth, _, angle), rgb in zip(layer.boxes.tolist(), layer.box_rgb.tolist(), strict=True):
+        corners = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)]) * (width / 2, depth / 2)
+        c, s = np.cos(angle), np.sin(angle)
+        sheet.polygon(corners @ np.array([(c, s), (-s, c)]) + (x, y), tuple(rgb))
+    for (x, y, heading, radius, _), rgb in zip(layer.people.tolist(), layer.people_rgb.tolist(), strict=True):
+        size = max(radius * sheet.scale, LEAST)
+        sheet.dot((x, y), size, tuple(rgb), sheet.palette.text, edge=1.5)
+        ahead = size / sheet.scale * np.array([np.cos(heading), np.sin(heading)])
+        sheet.dot((np.array([x, y]) + ahead).tolist(), NOSE * size, tuple(rgb), sheet.palette.text, edge=1.5)
+    for x, y, _, on in layer.lamps.tolist():
+        sheet.dot((x, y), LAMP, LIT if on else unlit(sheet.palette), sheet.palette.rim, edge=1.5)
+
+
 def _unbroken(path: np.ndarray, jump: float) -> list[np.ndarray]:
     """The parts of a path between jumps."""
     if len(path) < 2:
         return []
     return np.split(path, np.flatnonzero(np.hypot(*np.diff(path, axis=0).T) > jump) + 1)
+
+
+def _draw_movements(sheet: Sheet, subject: Subject, size: float) -> list[Entry]:
+    """size: of the robot, pixels."""
+    if subject.overlaid.movements is None:
+        return []
+    tried, palette = subject.overlaid.movements(), subject.palette
+    bright, grey = movements.shades(palette)
+    ways = [movements.arc_on_plate(tried, k, MapFit(1.0), size / sheet.scale) for k in range(len(tried.free))]
+    for k in movements.drawn_along(tried):
+        free = bool(tried.free[k])
+        sheet.line(ways[k], bright if free else grey, 1.2, dash="" if free else "4 3")
+    for way, free in zip(ways, tried.free.tolist(), strict=True):
+        sheet.dot(way[-1].tolist(), 1.8, bright if free else grey)
+    sheet.way(ways[tried.chosen], palette.robot, 4.5)
+    return [("line", bright, "movements it tries; dashed: an echo is too close; bold: it goes")]
+
+
+def _draw_sonar(sheet: Sheet, subject: Subject) -> list[Entry]:
+    world, truth, ranges_m = subject.snapshot.world, subject.snapshot.truth, subject.snapshot.senses.ranges_m
+    if world is None or truth is None or not world.is_office:
+        return []
+    heard = np.isfinite(ranges_m)
+    angles, reach = truth.heading_rad + world.sonar_angles_rad[heard], ranges_m[heard]
+    echoes = np.column_stack([truth.x + reach * np.cos(angles), truth.y + reach * np.sin(angles)])
+    sheet.lines([[(truth.x, truth.y), echo] for echo in echoes], subject.palette.sonar, 1.5)
+    for echo in echoes.tolist():
+        sheet.dot(echo, ECHO, subject.palette.sonar)
+    return [("line", subject.palette.sonar, "its sonars' echoes")] if len(echoes) else []

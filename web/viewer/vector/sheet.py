@@ -1,6 +1,5 @@
-"""A sheet of an SVG: a heading, a field in which points of some frame are drawn, and lines of words below.
-
-The labels of a sheet: none covers another or leaves the field, and one that had to go aside has a line to its place.
+"""A sheet of an SVG: a heading, a field in which points of some frame are drawn, and lines of words below. None of its labels
+covers another or leaves the field, and one that had to go aside has a line to its place.
 """
 
 from __future__ import annotations
@@ -19,69 +18,16 @@ from web.viewer.primitives import images
 from web.viewer.primitives.labels import clear_place
 from web.viewer.primitives.palette import Palette, Rgb
 
-GAP = 4.0  # pixels
-ASIDE = 0.7  # of its height: a label that has gone farther has a line
-CLEAR = 11.0  # pixels around what it names, in which there is no line
 Array = NDArray[np.float64]
-
-
-@dataclass(frozen=True)
-class Label:
-    """All in pixels; y goes down."""
-
-    at: tuple[float, float]  # what it names
-    up: float  # how far above it the label would be best
-    words: str
-    ink: Rgb
-    size: float  # of the words
-    fill: Rgb | None  # of the bar below them; None: there is none
-    rim: Rgb | None = None  # of the bar
-
-    @property
-    def bar(self) -> Array:
-        """(2,) width and height of what it takes."""
-        aside = 0.9 * self.size if self.fill is not None else 2.0
-        return np.array([width_of(self.words, self.size, bold=self.fill is not None) + 2 * aside, 1.5 * self.size])
-
-
-def width_of(words: str, size: float, *, bold: bool = False) -> float:
-    """In DejaVu Sans, which is wider than what a browser without it takes instead."""
-    return float(images.font(48, bold).getlength(plain(words))) * size / 48
-
-
-def plain(words: str) -> str:
-    return "".join(c for c in words if c.isprintable())  # control characters are no XML
-
-
-def laid_out(labels: list[Label], avoided: list[tuple[float, float, float]], field: Array) -> list[tuple[float, float]]:
-    """The middle of each; the earlier ones have the choice. avoided: middles and radii; field: (2, 2) two opposite corners."""
-    around = [(x, y, 2 * radius, 2 * radius) for x, y, radius in avoided]
-    taken = np.array(around, np.float64).reshape(-1, 4)
-    places: list[tuple[float, float]] = []
-    for label in labels:
-        wanted = np.array(label.at) - (0.0, label.up)
-        x, y = clear_place(wanted, label.bar, taken, field, GAP).tolist()
-        taken = np.vstack([taken, (x, y, *label.bar)])
-        places.append((x, y))
-    return places
-
-
-def line_to(label: Label, place: tuple[float, float]) -> Array | None:
-    """(2, 2) from beside what it names to its bar; None: it needs no line."""
-    half, middle, at = label.bar / 2, np.array(place), np.array(label.at)
-    end = np.clip(at, middle - half, middle + half)
-    far = float(np.hypot(*(end - at)))
-    if far <= CLEAR or np.hypot(*(middle - at + (0.0, label.up))) <= ASIDE * 2 * half[1]:
-        return None
-    return np.stack([at + (end - at) * CLEAR / far, end])
-
-
+Mark = Literal["line", "dashes", "ring", "oval", "area"]
+Entry = tuple[Mark, Rgb, str]  # of a legend
 WIDTH, TOP, EDGE, FOOT = 1000.0, 78.0, 24.0, 54.0  # pixels
 TALLEST = 1400.0  # of the field
 SHARP = 4  # a pixel of an image is so many wide: programs that smooth what they enlarge blur less of it
 HEADING = WIDTH - 2 * EDGE - 230  # beside it may be a scale
-Mark = Literal["line", "dashes", "ring", "oval", "area"]
-Entry = tuple[Mark, Rgb, str]  # of a legend
+GAP = 4.0  # pixels
+ASIDE = 0.7  # of its height: a label that has gone farther has a line
+CLEAR = 11.0  # pixels around what it names, in which there is no line
 _FONT = 'font-family="DejaVu Sans, Segoe UI, Roboto, Helvetica, Arial, sans-serif"'
 
 
@@ -123,9 +69,8 @@ class Sheet:
         xy = np.asarray(points, np.float64).reshape(-1, 2)
         return xy * (self.scale, -self.scale) + (self._left, self._bottom)
 
-    def line(
-        self, points: ArrayLike, colour: Rgb, width: float, *, opacity: float = 1.0, dash: str = ""
-    ) -> None:  # width: pixels
+    def line(self, points: ArrayLike, colour: Rgb, width: float, *, opacity: float = 1.0, dash: str = "") -> None:
+        """width: pixels."""
         if len(np.asarray(points)) > 1:
             dashed = f' stroke-dasharray="{dash}"' if dash else ""
             self._parts.append(
@@ -170,13 +115,9 @@ class Sheet:
         large = pixels.repeat(SHARP, 0).repeat(SHARP, 1)
         height, width = large.shape[:2]
         (left, top), right, bottom = self.pixels(corners).tolist()
-        turned = (
-            (right[0] - left) / width,
-            (right[1] - top) / width,
-            (bottom[0] - left) / height,
-            (bottom[1] - top) / height,
-        )
-        matrix = " ".join(f"{part:.6g}" for part in (*turned, left, top))
+        across = (right[0] - left) / width, (right[1] - top) / width
+        down = (bottom[0] - left) / height, (bottom[1] - top) / height
+        matrix = " ".join(f"{part:.6g}" for part in (*across, *down, left, top))
         png = base64.b64encode(images.png(large)).decode()
         self._parts.append(
             f'<image width="{width}" height="{height}" transform="matrix({matrix})" preserveAspectRatio="none" '
@@ -198,22 +139,15 @@ class Sheet:
         self.arrow(xy[-1, 0], xy[-1, 1], float(np.arctan2(ahead[1], ahead[0])), colour, 2.4 * width)
 
     def label(
-        self,
-        place: Sequence[float],
-        words: str,
-        colour: Rgb,
-        *,
-        size: float = 15,
-        up: float = 0.0,
-        fill: Rgb | None = None,
-        rim: Rgb | None = None,
-    ) -> None:
+        self, place: Sequence[float], words: str, colour: Rgb, *, size: float = 15, up: float = 0.0,
+        fill: Rgb | None = None, rim: Rgb | None = None,
+    ) -> None:  # fmt: skip
         """Words in the middle of a place or so many pixels above it, or beside that where labels that came before are.
 
         fill, rim: of a bar below them; a place beside the field is named at its edge."""
         x1, y1, x2, y2 = self.box
         x, y = self.pixels([np.clip(place, (x1, y1), (x2, y2))])[0].tolist()
-        self._labels.append(Label((x, y), up, plain(words), colour, size, fill, rim))
+        self._labels.append(Label((x, y), up, _plain(words), colour, size, fill, rim))
 
     def note(self, place: Sequence[float], words: str, *, anchor: str, up: float, bold: bool = False) -> None:
         """Words that stay where they are, so many pixels above a place, as numbers on an axis do; labels give way."""
@@ -280,7 +214,7 @@ class Sheet:
         """Draws the labels, lines first."""
         places = laid_out(self._labels, self._avoided, field)
         for label, place in zip(self._labels, places, strict=True):
-            line = line_to(label, place)
+            line = _line_to(label, place)
             if line is not None:
                 ink = _hex(label.fill or label.ink)
                 self._around.append(
@@ -307,7 +241,7 @@ class Sheet:
         around = f' stroke="{_hex(self.palette.floor)}" stroke-width="4" paint-order="stroke"' if casing else ""
         self._around.append(
             f'<text x="{x:.1f}" y="{y:.1f}" font-size="{size:g}" fill="{_hex(colour)}" text-anchor={quoteattr(anchor)}'
-            f"{weight}{around}>{escape(plain(words))}</text>"
+            f"{weight}{around}>{escape(_plain(words))}</text>"
         )
 
 
@@ -340,3 +274,54 @@ def _hex(colour: Sequence[int]) -> str:
 
 def _see_through(opacity: float) -> str:
     return f' opacity="{opacity:.2f}"' if opacity < 1 else ""
+
+
+@dataclass(frozen=True)
+class Label:
+    """All in pixels; y goes down."""
+
+    at: tuple[float, float]  # what it names
+    up: float  # how far above it the label would be best
+    words: str
+    ink: Rgb
+    size: float  # of the words
+    fill: Rgb | None  # of the bar below them; None: there is none
+    rim: Rgb | None = None  # of the bar
+
+    @property
+    def bar(self) -> Array:
+        """(2,) width and height of what it takes."""
+        aside = 0.9 * self.size if self.fill is not None else 2.0
+        return np.array([width_of(self.words, self.size, bold=self.fill is not None) + 2 * aside, 1.5 * self.size])
+
+
+def width_of(words: str, size: float, *, bold: bool = False) -> float:
+    """In DejaVu Sans, which is wider than what a browser without it takes instead."""
+    return float(images.font(48, bold).getlength(_plain(words))) * size / 48
+
+
+def _plain(words: str) -> str:
+    return "".join(c for c in words if c.isprintable())  # control characters are no XML
+
+
+def laid_out(labels: list[Label], avoided: list[tuple[float, float, float]], field: Array) -> list[tuple[float, float]]:
+    """The middle of each; the earlier ones have the choice. avoided: middles and radii; field: (2, 2) two opposite corners."""
+    around = [(x, y, 2 * radius, 2 * radius) for x, y, radius in avoided]
+    taken = np.array(around, np.float64).reshape(-1, 4)
+    places: list[tuple[float, float]] = []
+    for label in labels:
+        wanted = np.array(label.at) - (0.0, label.up)
+        x, y = clear_place(wanted, label.bar, taken, field, GAP).tolist()
+        taken = np.vstack([taken, (x, y, *label.bar)])
+        places.append((x, y))
+    return places
+
+
+def _line_to(label: Label, place: tuple[float, float]) -> Array | None:
+    """(2, 2) from beside what it names to its bar; None: it needs no line."""
+    half, middle, at = label.bar / 2, np.array(place), np.array(label.at)
+    end = np.clip(at, middle - half, middle + half)
+    far = float(np.hypot(*(end - at)))
+    if far <= CLEAR or np.hypot(*(middle - at + (0.0, label.up))) <= ASIDE * 2 * half[1]:
+        return None
+    return np.stack([at + (end - at) * CLEAR / far, end])
