@@ -17,10 +17,10 @@ from typing import TYPE_CHECKING, Annotated, Any, cast, get_type_hints
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError, create_model
 
 from app.order_book import SMALLEST_M, Order, carry_out, overtakes
-from app.orders import Orders
 from app.runs.folder import BRAIN, LINES, all_runs, runs_folder
 from app.runs.header import SIZE, Header, edited, read_header, require_room
 from app.runs.journal import Lines
+from app.session import Session
 from disk.state_reading import words_of
 from disk.words import one_line
 from sim2d import Box, World
@@ -62,7 +62,7 @@ _NARROWER: dict[
 
 def check_order(order: Order) -> None:
     """ValueError says what is wrong with it."""
-    method = getattr(Orders, order.name, None)
+    method = getattr(Session, order.name, None)
     if not getattr(method, "is_order", False):
         raise ValueError(f"{order.name[:40]!r} is no order that a session can be given")
     try:
@@ -78,7 +78,7 @@ def check_order(order: Order) -> None:
 
 @cache
 def _values_of(name: str) -> TypeAdapter[Any]:
-    method = inspect.unwrap(getattr(Orders, name))
+    method = inspect.unwrap(getattr(Session, name))
     kinds = get_type_hints(method, globalns=method.__globals__)
     fields: dict[str, Any] = {}
     for key, parameter in list(inspect.signature(method).parameters.items())[1:]:
@@ -161,7 +161,7 @@ class KeptRun:
             while following is not None and following.tick == session.tick_count:
                 _again(session, following)
                 following = next(orders, None)
-            if session.tick_count >= until or session.over:
+            if session.tick_count >= until or session.source.over:
                 return
             session.tick()
 
