@@ -7,52 +7,18 @@ test_companion.py: the first stays the same to the bit, and a companion with the
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
 from app.config import Config, Value
 from app.evaluation import Evaluation
-from app.recordings.scan_ties import ScanTies
+from app.sensor_input import SensorInput, Ties
 from disk import encode, kind
-from ratslam_core import Estimate, Odometry, RatSlam
+from ratslam_core import Estimate, RatSlam
 from ratslam_core.params import RatSlamParams
-from ratslam_core.parts import Witness
 from sim2d import Truth
 
 SECTIONS = tuple(RatSlamParams.__dataclass_fields__)  # of the parameters that a brain has
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Heard:
-    """What a brain is given in one step; the fields are those of `RatSlam.step`. gap: the robot was away for a while."""
-
-    image: NDArray[np.uint8] | None
-    odometry: Odometry
-    ranges_m: NDArray[np.floating] | None
-    behaviour: int
-    scene: int | None = None
-    gap: bool = False
-    scan_m: NDArray[np.float64] | None = None  # of a laser, in the order of its beams
-
-    def tell(
-        self, brain: RatSlam, watch: Callable[[str], None] | None = None, witness: Witness | None = None
-    ) -> Estimate:
-        """One step of a brain. The scene number is made from the true pose, so a brain gets it only if its front end is
-        "scene numbers", as in the papers' own simulator."""
-        numbers = brain.params.local_view.front_end == "scene numbers"
-        return brain.step(
-            self.image,
-            self.odometry,
-            scene=self.scene if numbers else None,
-            behaviour=self.behaviour,
-            ranges_m=self.ranges_m,
-            watch=watch,
-            witness=witness,
-        )
 
 
 @kind("parting/1")
@@ -95,24 +61,18 @@ class Companion:
         self.evaluation, self.since_s, self.parting = evaluation, since_s, Parting()
         self.counterpart: list[int] = []
         self.estimate: Estimate | None = None
-        self.ties: ScanTies | None = None  # of a recording with a laser
+        self.ties: Ties | None = None  # of a recording with a laser
 
     def follow(
-        self, heard: Heard, time_s: float, tick: int, truth: Truth | None, first: RatSlam, estimate: Estimate
+        self, sensed: SensorInput, time_s: float, tick: int, truth: Truth | None, first: RatSlam, estimate: Estimate
     ) -> None:
         """One step on what the first brain was given in this tick.
 
         first, estimate: the first brain, and what it has made of the tick; they are only compared with.
         """
-        if heard.gap:
-            self.brain.declare_kidnapped()
-        if self.ties is not None:
-            self.ties.see(heard.scan_m)
-        own = self.estimate = heard.tell(self.brain, witness=self.ties)
-        if self.ties is not None and own.created:
-            self.ties.made(self.brain.experience_map)
+        own = self.estimate = sensed.tell(self.brain, self.ties)
         if truth is not None:
-            self.evaluation.record(time_s, truth, self.brain.experience_map, own.created, heard.odometry)
+            self.evaluation.record(time_s, truth, self.brain.experience_map, own.created, sensed.odometry)
         self._note_counterpart(estimate.experience)
         self.parting.note(tick, time_s, first, estimate, self.brain, own)
 

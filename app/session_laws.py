@@ -16,11 +16,9 @@ from typing import get_args
 import numpy as np
 
 from app.companion import SECTIONS, Companion, Parting
-from app.comparing import LONGEST_NAME
 from app.config import Config
 from app.evaluation import Evaluation
 from app.evaluation.kidnapping import Kidnapping, Stretch
-from app.orders import MOST_TAGS
 from app.pilot import Mode, Pilot, PilotParams
 from app.pilot.bars import Bar, Bars
 from app.pilot.behaviours import Behaviour
@@ -28,7 +26,8 @@ from app.pilot.explore import Explorer, Turn
 from app.pilot.known_ground import KnownGround
 from app.pilot.route_following import RouteFollower
 from app.pilot.seeking import Seeker
-from app.session import Session
+from app.session import LONGEST_NAME, MOST_TAGS, Session
+from app.sources.simulated import Simulated
 from ratslam_core import Estimate, Odometry, RatSlam, Route, laws
 from ratslam_core.laws.brain import beats
 from ratslam_core.laws.measures import FAR_M, array, number, pose, same_kind, true, whole, within
@@ -294,7 +293,7 @@ def _frame(frame: SensorFrame) -> None:
 # pyright: reportPrivateUsage=false, reportUnnecessaryIsInstance=false
 
 
-_PARTS = {"seed", "config", "simulator", "brain", "pilot", "evaluation", "odometry", "estimate", "tags"}
+_PARTS = {"seed", "config", "source", "brain", "ties", "pilot", "evaluation", "odometry", "estimate", "tags"}
 
 
 def check(session: Session, world: World) -> None:
@@ -303,6 +302,8 @@ def check(session: Session, world: World) -> None:
     true(not odd, f"a session differs in {', '.join(sorted(odd))}: it was made by another version")
     whole("seed", session.seed, 0, 2**64)
     same_kind("config", session.config, Config())
+    true(isinstance(session.source, Simulated), f"its source is a {type(session.source).__name__}")
+    true(session.ties is None, "a brain in an office has no laser's scans to tie")
     simulator(session.simulator, world)
     true(isinstance(session.brain, RatSlam), f"its brain is a {type(session.brain).__name__}")
     laws.check(session.brain)

@@ -25,7 +25,7 @@ from sim2d import World, world_from_json
 
 def take_session(session: Session) -> State:
     """The whole state, as a copy: the session may go on."""
-    return _state_of(session.world_texts, copy_state(session))
+    return _state_of(session.source.world_texts, copy_state(session))
 
 
 def save_copy(world_texts: tuple[str, str], copy: Session, path: Path) -> None:

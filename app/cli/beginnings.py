@@ -126,7 +126,7 @@ def resumed_run(args: argparse.Namespace) -> First:
     )
     print(f"The run {kept.name} goes on at tick {session.tick_count}", flush=True)
     own_worlds.tidy()
-    world = open_world(DEFAULT_WORLD) if session.recording is not None else session.world
+    world = session.source.world or open_world(DEFAULT_WORLD)
     return First(world, session.seed, session.config, begin=lambda engine: engine.go_on(kept, session))
 
 

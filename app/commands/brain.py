@@ -13,14 +13,12 @@ from collections.abc import Mapping
 
 from app.commands.outcome import Outcome, attempt
 from app.companion import Companion
-from app.comparing import config_beside
 from app.config import Config, Value
 from app.config.pairs import engine_of, pair_of
 from app.config.presets import values_of
 from app.engine.engine import Engine
-from app.played_session import PlayedSession
 from app.runs.run_file import KeptRun
-from app.session import Session
+from app.session import Session, config_beside
 from app.views.beside import differences_of
 from disk import copy_state
 from ratslam_core import RatSlam
@@ -131,8 +129,8 @@ def _restart(engine: Engine) -> None:
     run = engine.run
     if run.trial is not None and run.trial.state == "running":
         engine.begin_trial(run.trial.trial, run.trial.title)
-    elif isinstance(run.session, PlayedSession):
-        engine.begin_recording(run.session.player)
+    elif (player := run.session.player) is not None:
+        engine.begin_recording(player)
     else:
         before = None if run.trial is not None else run.config_before
         engine.begin(engine.world, run.session.seed, engine.config_to_begin)

@@ -8,7 +8,6 @@ from __future__ import annotations
 from app.commands.brain import begin_again
 from app.commands.outcome import Later, Outcome
 from app.engine.engine import Engine
-from app.played_session import PlayedSession
 from app.recordings.playing import Player
 from app.views.recorded import recording_view
 from web import messages as m
@@ -59,8 +58,9 @@ def reset(engine: Engine, command: m.Reset) -> Outcome:
     beside = session.companion
     world, name = engine.world, command.world
     try:
-        if name is None and isinstance(session, PlayedSession):
-            engine.begin_recording(session.player, command.seed)
+        player = session.player
+        if name is None and player is not None:
+            engine.begin_recording(player, command.seed)
             begin_again(engine, beside)
             return None
         if name is not None and name != world.name:
@@ -82,5 +82,5 @@ def play_recording(engine: Engine, request: m.PlayRecording) -> Outcome:
         return m.Refused("recording", None, f"this recording cannot be played: {error}")
     about = run.session.recording
     assert about is not None
-    engine.running = not run.session.over
-    return m.Accepted(0, recording_view(about, run.session.over))
+    engine.running = not run.session.source.over
+    return m.Accepted(0, recording_view(about, run.session.source.over))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -15,6 +15,7 @@ from app.recordings.motion import Motion
 from app.recordings.recording import Moment, Recording
 from app.recordings.scan_odometry import ScanRules, is_laser
 from app.recordings.scan_ties import ScanTies
+from app.sensor_input import SensorInput
 from disk import kind
 from ratslam_core import Estimate, Odometry, RatSlam
 
@@ -27,8 +28,6 @@ class Step:
     estimate: Estimate
     brain: RatSlam
     motion: Odometry
-    ranges_m: NDArray[np.float64] | None = None  # as the brain was given them
-    gap: bool = False  # the robot was away for a while
 
 
 class Player:
@@ -55,55 +54,45 @@ class Player:
         # The front end for lasers takes beams from right to left; the order of sonars is that in which they were told.
         self._order = np.argsort(angles, kind="stable") if is_laser(recording.about) else np.arange(len(angles))
 
+    @property
+    def beam_angles_rad(self) -> list[float]:
+        """Of the ranges, as the brain is given them."""
+        return np.array(self.recording.about.beam_angles_rad)[self._order].tolist()
+
     def brain(self) -> RatSlam:
         """A new one, as a session of this seed would make it."""
         brain_seed, _ = np.random.SeedSequence([self.seed, 1]).spawn(2)
-        angles = np.array(self.recording.about.beam_angles_rad)[self._order].tolist()
-        return RatSlam(self.config.engine, np.random.default_rng(brain_seed), sonar_angles_rad=angles)
+        return RatSlam(self.config.engine, np.random.default_rng(brain_seed), sonar_angles_rad=self.beam_angles_rad)
 
-    def begin(self) -> Playing:
-        """What plays the recording, before its first moment."""
+    def new_ties(self) -> ScanTies | None:
+        """What ties the experiences of a new brain by its laser's scans; None: it has no laser."""
         about = self.recording.about
-        ties = ScanTies(about, self._scans) if is_laser(about) else None
-        return Playing(self.brain(), self._motion.anew(), ties, self._order.copy())
+        return ScanTies(about, self._scans) if is_laser(about) else None
+
+    def reader(self) -> MomentReader:
+        """What reads the recording, before its first moment."""
+        return MomentReader(self._motion.anew(), self._order.copy())
 
     def steps(self) -> Iterator[Step]:
         """Every moment in turn. It counts moments and not time, so the pace of whoever asks changes nothing."""
-        playing = self.begin()
+        brain, ties, reader = self.brain(), self.new_ties(), self.reader()
         for moment in self.recording.moments():
-            yield playing.step(moment)
+            sensed = reader.read(moment)
+            yield Step(moment, sensed.tell(brain, ties), brain, sensed.odometry)
 
 
-@kind("playing/1")
-class Playing:
-    """A brain on its way through a recording, and what its motion is read with: all that decides what comes of the moments
-    to come. It can be copied between two of them."""
+@kind("moment reader/1")
+class MomentReader:
+    """What the motion of a recording is read with: all that decides what a brain is given of the moments to come."""
 
-    def __init__(self, brain: RatSlam, motion: Motion, ties: ScanTies | None, order: NDArray[np.int64]) -> None:
+    def __init__(self, motion: Motion, order: NDArray[np.int64]) -> None:
         """order: in which the brain is told the ranges."""
-        self.brain, self._motion, self._ties, self._order = brain, motion, ties, order
+        self._motion, self._order = motion, order
 
-    @property
-    def ties(self) -> ScanTies | None:
-        """What ties the experiences of the brain by its laser's scans; None: it has no laser."""
-        return self._ties
+    def read(self, moment: Moment) -> SensorInput:
+        """The next moment, as a brain is given it."""
+        return self.input_of(moment, self._motion.of(moment), gap=self._motion.gap)
 
-    def ranges_of(self, moment: Moment) -> NDArray[np.float64] | None:
-        """As the brain is given them."""
-        return None if moment.ranges_m is None else moment.ranges_m[self._order]
-
-    def step(self, moment: Moment, watch: Callable[[str], None] | None = None) -> Step:
-        """Play the next moment. watch: called after each stage of RatSLAM; it must not change anything."""
-        brain, motion = self.brain, self._motion
-        moved = motion.of(moment)
-        if motion.gap:
-            brain.declare_kidnapped()
-        ranges_m = self.ranges_of(moment)
-        if self._ties is not None:
-            self._ties.see(moment.ranges_m)
-        estimate = brain.step(
-            moment.image, moved, behaviour=moment.behaviour, ranges_m=ranges_m, watch=watch, witness=self._ties
-        )
-        if self._ties is not None and estimate.created:
-            self._ties.made(brain.experience_map)
-        return Step(moment, estimate, brain, moved, ranges_m, motion.gap)
+    def input_of(self, moment: Moment, moved: Odometry, *, gap: bool = False) -> SensorInput:
+        ranges_m = None if moment.ranges_m is None else moment.ranges_m[self._order]
+        return SensorInput(moment.image, moved, ranges_m, moment.behaviour, gap=gap, scan_m=moment.ranges_m)

@@ -25,7 +25,7 @@ LOOK_AFTER = 10  # ticks between two looks whether a copy is due
 
 @dataclass(frozen=True, slots=True)
 class Copy:
-    """The state after a tick. texts: `Session.world_texts`."""
+    """The state after a tick. texts: `Source.world_texts`."""
 
     tick: int
     time_s: float
@@ -88,7 +88,7 @@ class Book:
         self.told.append((session.tick_count, pulse_of(session)))
         if session.tick_count % LOOK_AFTER == 0 and self._is_due(session):
             began = time.thread_time()
-            self.told.append(Copy(session.tick_count, session.time_s, session.world_texts, copy_state(session)))
+            self.told.append(Copy(session.tick_count, session.time_s, session.source.world_texts, copy_state(session)))
             self._cost_s = time.thread_time() - began
             self._copied_s, self._at = session.time_s, time.monotonic()
 

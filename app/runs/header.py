@@ -27,7 +27,7 @@ from disk.state_reading import words_of
 from disk.words import one_line, plain
 
 if TYPE_CHECKING:
-    from app.played_session import PlayedSession
+    from app.recordings.playing import Player
     from app.session import Session
 
 
@@ -109,12 +109,12 @@ class Beginning:
 
 def beginning_of(session: Session, *, brain: bool = False, trial: str = "") -> Beginning:
     """The beginning of a session that has not run yet."""
-    return Beginning(session.world_text, session.world.name, session.seed, session.config, brain, trial)
+    return Beginning(session.source.world_texts[0], session.world.name, session.seed, session.config, brain, trial)
 
 
-def recorded_beginning(session: PlayedSession) -> Beginning | None:
+def recorded_beginning(session: Session, player: Player) -> Beginning | None:
     """The same where a recording plays; None: it could not be opened again."""
-    about, path = session.about, session.player.path
+    about, path = player.recording.about, player.path
     dt = about.seconds / max(about.moments - 1, 1)
     name = plain(about.name, 100)
     return path and Beginning("", name, session.seed, session.config, recording=path.absolute(), dt=min(dt, 1e6))

@@ -9,14 +9,13 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import cast
 
-from app.played_session import PlayedSession
 from app.recordings.apart import ReadApart
 from app.recordings.opening import fingerprint
 from app.recordings.playing import Player
 from app.runs.folder import STATE
 from app.runs.header import Header, pulse_of
 from app.runs.run_file import KeptRun
-from app.session import Session
+from app.session import Session, played_session
 from app.session_snapshot import load_session
 from disk import decode
 from disk.state_file import load_as
@@ -81,7 +80,7 @@ def _to_the_end(run: KeptRun, sessions: Iterator[Session], tell: Tell) -> Sessio
     return session
 
 
-def recorded(name: str, header: Header) -> PlayedSession:
+def recorded(name: str, header: Header) -> Session:
     """The session of the run of this name before its first tick. ValueError: its recording has moved, has changed, or cannot
     be played."""
     kept = header.recording
@@ -96,10 +95,10 @@ def recorded(name: str, header: Header) -> PlayedSession:
         raise ValueError(f"{whose}, which cannot be read: {error.strerror or error}") from None
     if not same:
         raise ValueError(f"{whose}, which has changed since: the run cannot be played again")
-    return PlayedSession(Player(ReadApart(path), header.seed, header.config, path), header.seed)
+    return played_session(Player(ReadApart(path), header.seed, header.config, path), header.seed)
 
 
-def state_of(file: Path, begun: PlayedSession, hashes: dict[int, str]) -> PlayedSession | None:
+def state_of(file: Path, begun: Session, hashes: dict[int, str]) -> Session | None:
     """The session in the state that was kept in a file; None when there is none, or one that the run's hashes do not know:
     no other state is taken up. begun: plays the same recording."""
     try:
@@ -107,7 +106,7 @@ def state_of(file: Path, begun: PlayedSession, hashes: dict[int, str]) -> Played
     except ValueError:
         return None
     session = cast("tuple[object, ...]", parts)[-1] if isinstance(parts, tuple) else None
-    if not isinstance(session, PlayedSession) or hashes.get(session.tick_count) != session.digest(("", "")):
+    if not isinstance(session, Session) or hashes.get(session.tick_count) != session.digest(("", "")):
         return None
     session.settle((), begun)
     return session

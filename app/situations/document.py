@@ -24,7 +24,7 @@ from app.order_book import SMALLEST_M, Order, overtakes
 from app.runs.header import FORMAT as RUN
 from app.runs.header import Header, edit_of, edited, require_room
 from app.runs.journal import parts_of
-from app.runs.run_file import check_order
+from app.runs.order_check import check_order
 from app.situations.situation import Situation
 from disk.limits import LINE_PARTS, LINK_BYTES, ORDERS, PARTS_OF_AN_ORDER, SITUATION_BYTES, TICKS
 from disk.words import one_line

@@ -74,7 +74,7 @@ class Keyframe:
     time_s: float
     dt: float
     state: KeptState
-    worlds: tuple[World, ...]  # as `Session.worlds`
+    worlds: tuple[World, ...]  # as `Source.worlds`
     last_snap: Snap | None
 
 
@@ -164,7 +164,7 @@ class TimeMachine:
 
     def tick_at(self, time_s: float) -> int:
         """The tick of the live branch that ends at this simulated time, or the nearest."""
-        known = self.live.session.tick_at(time_s)
+        known = self.live.session.source.tick_at(time_s)
         if known is not None:
             return max(self.branches[0].from_tick, known)
         owner = self.live
@@ -234,7 +234,7 @@ class TimeMachine:
         live = self.live
         kept = self._chunks.keep(encode((live.session, live.history)))
         session, frame, snap = live.session, live.session.frame, live.history.events.last_snap
-        live.keyframes.append(Keyframe(frame.tick, frame.time_s, frame.dt, kept, session.worlds, snap))
+        live.keyframes.append(Keyframe(frame.tick, frame.time_s, frame.dt, kept, session.source.worlds, snap))
         self._chunks.make_room(int(IN_MEMORY * self._budget_bytes) - self._chunks.copy_nbytes)
         while self.nbytes > self._budget_bytes and self._thin():
             pass

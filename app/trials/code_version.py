@@ -13,13 +13,14 @@ _DECIDES = (
     "ratslam_core",
     "sim2d",
     "app/session.py",
-    "app/orders.py",
+    "app/sources",
+    "app/sensor_input.py",
     "app/pilot",
     "app/config",
     "app/evaluation",
     "app/trials",
 )
-_LOOKS_ON = {"figure_options.py", "final_map.py", "trace.py"}  # of app/trials: what is asked of a trial when it is over
+_LOOKS_ON = {"figure_options.py", "trace.py"}  # of app/trials: what is asked of a trial when it is over
 
 
 _ONE_AT_A_TIME = threading.Lock()

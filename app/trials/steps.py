@@ -8,15 +8,17 @@ Whether the steps of a protocol fit the world and the parameters, before the fir
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import numpy as np
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validator
 
-from app.session import Session
 from disk.words import lines, one_line
-from sim2d import World
 from web.messages.commands import Name
+
+if TYPE_CHECKING:
+    from app.session import Session
+    from sim2d import World
 
 _STREAM = 2  # of the run's seed; session.py and kidnap_times.py use others
 

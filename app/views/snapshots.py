@@ -8,7 +8,6 @@ from typing import Any, cast
 from app.config import Config, Value
 from app.config.pairs import pairs_beside, without
 from app.config.presets import PRESETS, preset_of
-from app.played_session import NOT_RECORDED
 from app.session import SECOND, Session, is_lost
 from app.views.arrays import Slow
 from app.views.belief import belief_of, spread_of
@@ -104,7 +103,7 @@ class Snapshots:
         session, history = self._session, self._history
         brain, truth, recorded = session.brain, session.truth, session.recording
         parts = self.parts() | (self.walk.parts if self.walk is not None else {})
-        parameters, preset = self._parameters.of(session.config, recorded is not None)
+        parameters, preset = self._parameters.of(session.config, session.source.foreign)
         return Snapshot(
             run=self._run,
             tick=session.tick_count,
@@ -168,7 +167,7 @@ class Snapshots:
             pairs=self.pairs,
             additions_off=self.additions_off,
             no_room=session.simulator.fit.refusal if recorded is None else no_room,
-            recording=recorded and recording_view(recorded, session.over),
+            recording=recorded and recording_view(recorded, session.source.over),
             map_in_office=self._fit(),
             ghost=ghost_of(session),
             spread=spread_of(session),
@@ -206,17 +205,17 @@ class _ParameterRows:
         self._rows: tuple[Parameter, ...] = ()
         self._preset = ""
 
-    def of(self, config: Config, recorded: bool = False) -> tuple[tuple[Parameter, ...], str]:
+    def of(self, config: Config, foreign: tuple[str, ...] = ()) -> tuple[tuple[Parameter, ...], str]:
         """All parameters, and the name of the preset whose values they have, or "".
 
-        recorded: without those of the simulator and the pilot, which a recording does not have.
+        foreign: without those of these sections, which a recording does not have.
         """
         if self._config is not config:
             self._config, self._preset = config, preset_of(config)
             self._rows = tuple(
                 Parameter(name=name, value=value, default=cast(Value, item.default), **item.metadata)
                 for name, item, value in config.items()
-                if not (recorded and name.split(".")[0] in NOT_RECORDED)
+                if name.split(".")[0] not in foreign
             )
         return self._rows, self._preset
 

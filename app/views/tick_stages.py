@@ -66,7 +66,7 @@ class TickRecorder:
         self._session, self._before = session, before
         self._here = session.brain.experience_map.here
         self._cells: dict[str, Activity] = {"view match": self._activity()}
-        self._between = session.brain.beats.due(session.dt_ahead) == 0
+        self._between = session.brain.beats.due(session.source.dt_ahead) == 0
         self._poses = np.zeros((0, 3))
         self._map: dict[str, Any] = {}
         self._residual = (0.0, 0.0)

@@ -70,7 +70,7 @@ def _kept(with_brain: bool) -> Files:
             brain = read_brain(io.BytesIO((folder / BRAIN).read_bytes()))
         session = Session(load_world("loop"), 2, Config(), brain)
         journal.add(written(header_of(beginning_of(session, brain=with_brain))))
-        lines = LineBook(journal, session.world_text, 0)
+        lines = LineBook(journal, session.source.world_texts[0], 0)
         session.on_order = lines.order
         for tick in range(1, TICKS + 1):
             session.tick()

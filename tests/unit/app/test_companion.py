@@ -13,9 +13,8 @@ from app import session_laws
 from app.config import Config, Value
 from app.config.pairs import pairs_beside
 from app.order_book import Order, carry_out
-from app.played_session import PlayedSession
 from app.recordings.playing import Player
-from app.session import Session
+from app.session import Session, played_session
 from app.session_snapshot import restore_session, take_session
 from disk import encode
 
@@ -177,7 +176,7 @@ def test_as_orders_and_from_a_file_both_go_on_as_they_did_and_a_spoilt_one_is_re
 @pytest.mark.parametrize("truth", [True, False])
 def test_beside_a_recording(truth: bool) -> None:
     player = Player(recorded(120, truth))
-    alone, session = PlayedSession(player), PlayedSession(player)
+    alone, session = played_session(player), played_session(player)
     session.begin_companion("one", "same", {}, True)
     for each in (alone, session):
         run_for(each, 100)
@@ -187,4 +186,4 @@ def test_beside_a_recording(truth: bool) -> None:
     session.begin_companion("with", "without", BLIND, False)
     run_for(session, 19)
     assert session.companion.parting.view is not None
-    assert session.over
+    assert session.source.over

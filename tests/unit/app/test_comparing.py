@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import pytest
 
-from app.comparing import LONGEST_NAME
 from app.config import Config, Value
 from app.config.pairs import NAMES, pair_of, pairs_beside, without
 from app.config.presets import PRESETS
 from app.engine.engine import Engine
 from app.recordings.playing import Player
-from app.session import Session
+from app.session import LONGEST_NAME, Session
 from app.trials.trial import run_trial
 from ratslam_core.params.additions import ADDITIONS
 from web import messages as m

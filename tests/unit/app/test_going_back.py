@@ -9,11 +9,11 @@ import pytest
 from PIL import Image
 
 from app.engine.engine import Engine
-from app.played_session import PlayedSession
 from app.recordings.opening import open_recording
 from app.recordings.playing import Player
 from app.recordings.recording import About, Moment
 from app.recordings.reel import Reel
+from app.session import Session, played_session
 from app.time_machine import TimeMachine, machine
 from app.views.history import History
 
@@ -65,8 +65,8 @@ def scans() -> Player:
     return Player(made, 1)
 
 
-def state_of(session: PlayedSession) -> tuple[object, ...]:
-    return session.state_hash(), session.frame.image.tobytes(), session.time_s, session.truth, session.over
+def state_of(session: Session) -> tuple[object, ...]:
+    return session.state_hash(), session.frame.image.tobytes(), session.time_s, session.truth, session.source.over
 
 
 @pytest.mark.parametrize("name", ["player", "pictures", "scans"])
@@ -74,13 +74,13 @@ def test_any_moment_is_as_it_was(name: str, request: pytest.FixtureRequest, monk
     """20 random moments of each, with orders in between, looked at in any order."""
     monkeypatch.setattr(machine, "AGAIN_MS", 0.0)  # as of a recording whose moments take long: each 60th is kept
     monkeypatch.setattr(machine, "LOOK_AFTER", 60)
-    session = PlayedSession(request.getfixturevalue(name))
+    session = played_session(request.getfixturevalue(name))
     history = History(session)
     past = TimeMachine(session, history)
     session.on_order = past.told
     rng, were = random.Random(5), dict[int, tuple[object, ...]]()
     chosen = set(rng.sample(range(90 if name == "scans" else TICKS - 5), 20))
-    while not session.over:
+    while not session.source.over:
         if session.tick_count in chosen:
             were[session.tick_count] = state_of(session)
         if session.tick_count == 40:
@@ -95,7 +95,7 @@ def test_any_moment_is_as_it_was(name: str, request: pytest.FixtureRequest, monk
     assert [frame.tick for frame in past.live.keyframes] == list(range(0, session.tick_count + 1, 60))
     for tick in rng.sample(sorted(were), 20):
         again = past.moment(past.live, tick).session
-        assert isinstance(again, PlayedSession)
+        assert isinstance(again, Session)
         assert state_of(again) == were[tick]
     assert session.state_hash() == end
 
@@ -145,7 +145,7 @@ def test_looking_back_pauses_and_changes_nothing(player: Player, monkeypatch: py
 
 def test_the_past_plays_to_the_present_also_at_the_end_of_the_recording(player: Player) -> None:
     engine = playing(player, TICKS - 1)
-    assert engine.run.session.over
+    assert engine.run.session.source.over
     tell(engine, type="seek", tick=TICKS - 4)
     tell(engine, type="resume")
     run_for(engine, 2)

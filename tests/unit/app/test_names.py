@@ -21,7 +21,7 @@ from app.lessons.files import check_lesson, read_lesson
 from app.order_book import Order
 from app.runs.bookmarks import Bookmarks
 from app.runs.header import Beginning, header_of, read_header, written
-from app.runs.run_file import check_order
+from app.runs.order_check import check_order
 from app.situations.page import python_lines
 from app.situations.situation import Situation
 from app.startup.ending import ended

@@ -1,4 +1,4 @@
-"""Orders are data: given again to a session with the same beginning, they make the same run, bit for bit."""
+"""Session are data: given again to a session with the same beginning, they make the same run, bit for bit."""
 
 from __future__ import annotations
 
@@ -11,7 +11,6 @@ import numpy as np
 import pytest
 
 from app.order_book import Order, carry_out
-from app.orders import Orders
 from app.session import Session, spread_goals
 from sim2d import Box, load_world
 
@@ -58,7 +57,7 @@ def test_orders_given_again_make_the_same_run() -> None:
             session.tick()
         give(session)
         hashes.append(session.state_hash())
-    names = {name for name in dir(Orders) if getattr(getattr(Orders, name), "is_order", False)}
+    names = {name for name in dir(Session) if getattr(getattr(Session, name), "is_order", False)}
     assert {order.name for order in book} == names, "every order is given here, each once told"
     assert len(book) == len(GIVEN)
     again = Session(LIVING, 4)

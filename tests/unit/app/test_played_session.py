@@ -12,9 +12,9 @@ from app.commands import carry_out
 from app.engine.engine import Engine
 from app.engine.pace import Pace
 from app.engine.watchdog import Watchdog
-from app.played_session import PlayedSession
 from app.recordings.playing import Player
 from app.recordings.recording import Moment, Wanted, every
+from app.session import played_session
 from tests.unit.app.engines import an_engine, tell
 from tests.unit.app.made_recordings import MadeRecording, recorded
 from tests.unit.app.sessions import OFFICE
@@ -62,9 +62,9 @@ def reset(engine: Engine, **fields: object) -> m.Accepted | m.Refused:
 def test_it_is_what_the_player_makes_of_the_recording_whether_there_is_a_truth_or_not(
     player: Player, blind: Player
 ) -> None:
-    session, steps = PlayedSession(player), list(player.steps())
+    session, steps = played_session(player), list(player.steps())
     views = [session.estimate.recognition.view]
-    while not session.over:
+    while not session.source.over:
         session.tick()
         views.append(session.estimate.recognition.view)
     *_, unseeing = blind.steps()
@@ -84,7 +84,7 @@ def test_it_pauses_at_its_end_says_so_and_comes_out_the_same_again(player: Playe
             tell(engine, type=kind)
     assert engine.run.session.state_hash() == first
     reset(engine)
-    assert (engine.run.session.tick_count, engine.run.session.over) == (0, False)
+    assert (engine.run.session.tick_count, engine.run.session.source.over) == (0, False)
     assert to_the_end(engine) == first
     reset(engine, seed=9)
     assert engine.run.session.seed == 9

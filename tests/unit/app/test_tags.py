@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from app import session_laws
-from app.orders import MOST_TAGS
+from app.session import MOST_TAGS
 from app.session_snapshot import restore_session, take_session
 from app.views.office import tags_view
 

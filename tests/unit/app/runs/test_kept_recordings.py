@@ -138,7 +138,7 @@ def test_cut_off_it_is_offered_and_goes_on_to_the_same_end(drive: Path) -> None:
     config = engine.run.session.config
     assert carry_out(engine, m.GoOn(cut_off, resumed(cut_off))) == m.Accepted(60)
     run_for(engine, MOMENTS - 61)
-    assert engine.run.session.over
+    assert engine.run.session.source.over
     tell(engine, type="seek", tick=70)
     tell(engine, type="back_to_now")
     assert kept.stop() == end

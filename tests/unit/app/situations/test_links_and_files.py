@@ -13,8 +13,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from app.order_book import Order
-from app.orders import Orders
-from app.runs.run_file import check_order
+from app.runs.order_check import check_order
+from app.session import Session
 from app.situations import LONGEST_LINK, Situation, file_of, link_of, read_situation
 from sim2d import load_world
 
@@ -175,7 +175,7 @@ def test_every_order_that_a_session_takes_can_be_checked() -> None:
         "put_box": {"box": BOX}, "remove_box": named,
         "begin_companion": {"first": "a", "name": "b", "values": {}, "anew": False},
     }  # fmt: skip
-    names = [name for name in dir(Orders) if getattr(getattr(Orders, name), "is_order", False)]
+    names = [name for name in dir(Session) if getattr(getattr(Session, name), "is_order", False)]
     assert len(names) >= 18
     for name in names:
         with pytest.raises(ValueError, match=f"^{name}: nonsense: extra"):
