@@ -96,7 +96,7 @@ class Atlas:
     ) -> None:
         """Paint the strips that an image needs and that are not painted yet.
 
-        counts, walls: as `column_hits` fills them. mirrored: the strips seen in glass, as `mirror.mirrored` fills them.
+        counts, walls: as `column_hits` fills them. mirrored: the strips seen in glass, as `painting.mirrored` fills them.
         """
         for strip in self._bare[: _bare(counts, walls, self._owner, self._painted, self._bare)]:
             self._paint(int(strip))

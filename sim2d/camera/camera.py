@@ -1,4 +1,4 @@
-"""The robot's camera: the buffers and textures for the kernels of `sight`, `column_hits`, `mirror` and `painting`."""
+"""The robot's camera: the buffers and textures for the kernels of `sight` and `painting`."""
 
 from __future__ import annotations
 
