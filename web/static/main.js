@@ -1,8 +1,8 @@
 // The page: puts the parts together and turns clicks and keys into commands. The server is the only truth.
 
-import { $, find } from "./elements/dom.js";
+import { $, find } from "./ui/elements.js";
 import { BesideStrip } from "./beside/beside.js";
-import { FirstMinuteCard } from "./help/first_minute.js";
+import { FirstMinuteCard } from "./header/first_minute.js";
 import { HandDrive } from "./driving/drive.js";
 import { Aids } from "./viewer/aids.js";
 import { Editor } from "./editor/editor.js";
@@ -10,20 +10,18 @@ import { Exports } from "./export/export.js";
 import { Files } from "./worlds/files.js";
 import { Gallery } from "./experiments/gallery.js";
 import { takeBrainFiles } from "./worlds/brain_file.js";
-import { Help } from "./help/help.js";
-import { Header } from "./header/header.js";
-import { actOf } from "./model/key_table.js";
+import { Help } from "./header/help.js";
+import { closeOpenMenu, Header, Theming } from "./header/header.js";
+import { actOf, Keys } from "./driving/keys.js";
 import { Lesson } from "./lessons/lesson.js";
 import { LessonList } from "./lessons/list.js";
 import { KeptBrain } from "./worlds/kept_brain.js";
-import { Keys } from "./driving/keys.js";
 import { Connection } from "./net/connection.js";
-import { closeOpenMenu } from "./header/menus.js";
-import { sentence } from "./model/sentences.js";
+import { sentence } from "./ui/words.js";
 import { NewWorld } from "./worlds/new_world.js";
 import { OwnWorlds } from "./worlds/own_worlds.js";
 import { VIEWS } from "./shared.js";
-import { PlaceList } from "./access/place_list.js";
+import { PlaceList } from "./driving/place_list.js";
 import { Keeping } from "./share/keeping.js";
 import { Panel } from "./panel/panel.js";
 import { Speaker } from "./access/speaker.js";
@@ -31,13 +29,14 @@ import { RunUntilMenu } from "./lessons/run_until.js";
 import { Presenter } from "./presenter/presenter.js";
 import { Source } from "./recordings/source.js";
 import { Viewer } from "./viewer/viewer.js";
-import { Theming } from "./header/theming.js";
 import { Timeline } from "./timeline/timeline.js";
-import { dismissToast, toast } from "./elements/toasts.js";
+import { dismissToast, toast } from "./ui/toasts.js";
 import { Watched } from "./experiments/watched.js";
-import { page, takeNoFiles, watching } from "./watch/watch.js";
-import { KEYS } from "./model/watching.js";
+import { KEYS, newId, onlyLook, takeNoFiles } from "./net/watch.js";
 
+const watching = document.body.dataset.watch === "true";
+const page = newId(watching);
+if (watching) onlyLook(page);
 const link = new Connection(page);
 const header = new Header();
 const timeline = new Timeline(link);
@@ -226,7 +225,7 @@ async function mayLeave() {
     dialog.addEventListener("close", () => resolve(dialog.returnValue === "leave"), { once: true }),
   );
 }
-/** What the keys of key_table.js do; false: it had no meaning now. @type {Record<import("./model/key_table.js").Act, () => unknown>} */
+/** What the keys of keys.js do; false: it had no meaning now. @type {Record<import("./driving/keys.js").Act, () => unknown>} */
 const ACTS = {
   explore,
   kidnap,

@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { clock, tickTimes, tickTimesIn } from "../../../web/static/model/clock.js";
+import { clock, tickTimes, tickTimesIn } from "../../../web/static/ui/words.js";
 import { kinds, markOf, nameOf, weightOf } from "../../../web/static/model/event_kinds.js";
 import { frameOf, lying } from "../../../web/static/model/side_maps.js";
 import * as line from "../../../web/static/model/timeline.js";

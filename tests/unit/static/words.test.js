@@ -2,9 +2,9 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { FirstMinute } from "../../../web/static/model/first_minute.js";
-import { choices, whereabouts } from "../../../web/static/model/places.js";
-import * as said from "../../../web/static/model/sentences.js";
+import { FirstMinute } from "../../../web/static/header/first_minute.js";
+import { choices, whereabouts } from "../../../web/static/driving/place_list.js";
+import * as said from "../../../web/static/ui/words.js";
 import { Speech } from "../../../web/static/model/speech.js";
 
 test("a sentence begins with a capital letter and has one full stop; counts and sizes are in words", () => {

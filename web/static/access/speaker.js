@@ -1,6 +1,6 @@
 // Puts what happens into the page's live region, in breaths of some seconds.
 
-import { $ } from "../elements/dom.js";
+import { $ } from "../ui/elements.js";
 import { Speech } from "../model/speech.js";
 
 const BREATH_MS = 3000;

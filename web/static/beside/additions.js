@@ -1,9 +1,7 @@
 // A second brain without one of our additions, or with it if the first one lacks it: chosen by name, with what it is good for.
 
-import { $ } from "../elements/dom.js";
-import { make } from "../elements/elements.js";
+import { $, make, renew, say } from "../ui/elements.js";
 import { additionChoice, additionGroups } from "../model/additions.js";
-import { renew, say } from "../panel/parts.js";
 
 export class AdditionChoice {
   /** @param {(name: string, since: "beginning" | "now") => void} begin */

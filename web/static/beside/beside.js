@@ -1,9 +1,7 @@
 // Two brains on the same senses: a menu of the second ones, and a strip on the stage that says how the two differ.
 
-import { $, find } from "../elements/dom.js";
-import { make } from "../elements/elements.js";
-import { HEADS, MEANS, cellsOf, changedWords, odometryWords, sinceWhen, valueWords } from "../model/beside.js";
-import { renew } from "../panel/parts.js";
+import { $, find, make, renew } from "../ui/elements.js";
+import { cellsOf, changedWords, HEADS, MEANS, odometryWords, sinceWhen, valueWords } from "../model/beside.js";
 import { AdditionChoice } from "./additions.js";
 
 export class BesideStrip {

@@ -8,7 +8,7 @@ const DEAD = 0.18; // a gamepad's stick counts from here on
 
 export class HandDrive {
   /** @typedef {{ speed: number, yaw_rate: number }} Wish */
-  /** @typedef {import("../model/key_meanings.js").Direction} Direction */
+  /** @typedef {import("./keys.js").Direction} Direction */
 
   /** @param {(command: Drive) => void} send */
   constructor(send) {

@@ -1,10 +1,20 @@
 // The daylight against time: a small picture of the curve, and its points in fields.
 
-import { $, field, find, within } from "../elements/dom.js";
-import { keepingPlace, levelInput, make, mark, removeButton, timeInput } from "../elements/elements.js";
-import { svg } from "../elements/icons.js";
+import {
+  $,
+  field,
+  find,
+  keepingPlace,
+  levelInput,
+  make,
+  mark,
+  removeButton,
+  svg,
+  timeInput,
+  within,
+} from "../ui/elements.js";
 import { BOTTOM, DaylightCurve, HEIGHT, LEFT, RIGHT, TOP, WIDTH } from "../model/daylight_curve.js";
-import { NO_TIME, isLevel, seconds, time } from "../model/script.js";
+import { isLevel, NO_TIME, seconds, time } from "../model/script.js";
 
 export const NO_LEVEL = (/** @type {string} */ text) =>
   `“${text}” is no level; write a number from 0, which is dark, to 3. 1 is as painted.`;

@@ -1,6 +1,6 @@
 // The form beside the plan, with the properties of the selected thing.
 
-import { field as target, find } from "../elements/dom.js";
+import { field as target, find } from "../ui/elements.js";
 import { length } from "../model/geometry.js";
 import { kindOf, read, written } from "../model/things.js";
 

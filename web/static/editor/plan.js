@@ -1,6 +1,6 @@
 // The office from above: the things of a world, what moves in it, the robot, and what is being drawn.
 
-import { svg } from "../elements/icons.js";
+import { svg } from "../ui/elements.js";
 import { SvgView } from "./svg_view.js";
 import { Walls } from "./walls.js";
 import { away, corners, hinge, point, tip } from "../model/geometry.js";

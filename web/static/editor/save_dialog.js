@@ -1,8 +1,8 @@
 // The dialog that saves the office under a name.
 
-import { $ } from "../elements/dom.js";
+import { $ } from "../ui/elements.js";
 import { post, worlds } from "../net/post.js";
-import { toast } from "../elements/toasts.js";
+import { toast } from "../ui/toasts.js";
 
 export class SaveDialog {
   /** @param {import("./world_client.js").WorldClient} office */

@@ -1,6 +1,6 @@
 // A sheet in metres, drawn as SVG: which part of it is visible, layers, lines and circles, and its grid.
 
-import { svg } from "../elements/icons.js";
+import { svg } from "../ui/elements.js";
 import { ViewBox } from "../model/view_box.js";
 
 // Subclasses define `draw()` and `ring`, the corners of everything on it.

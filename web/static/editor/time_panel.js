@@ -1,9 +1,20 @@
 // What happens when: the lines of the world's script, sorted by time, to add, change and delete, and the daylight below them.
 
-import { $, field, find, within } from "../elements/dom.js";
-import { NO_LEVEL, DaylightForm } from "./daylight.js";
-import { keepingPlace, labelled, levelInput, make, mark, removeButton, timeInput } from "../elements/elements.js";
-import { ACTIONS, NO_TIME, firstAction, isLevel, line, namesOf, seconds, time } from "../model/script.js";
+import {
+  $,
+  field,
+  find,
+  keepingPlace,
+  labelled,
+  levelInput,
+  make,
+  mark,
+  removeButton,
+  timeInput,
+  within,
+} from "../ui/elements.js";
+import { DaylightForm, NO_LEVEL } from "./daylight.js";
+import { ACTIONS, firstAction, isLevel, line, namesOf, NO_TIME, seconds, time } from "../model/script.js";
 import { SCRIPT_ACTIONS } from "../shared.js";
 
 /** @typedef {import("../model/script.js").Action} Action */

@@ -1,7 +1,7 @@
 // The walls of the plan. A few are SVG like everything else. Thousands are painted once on a canvas beneath, since the browser
 // paints all of the SVG again whenever the robot moves, which takes seconds for ten thousand walls without a graphics card.
 
-import { svg } from "../elements/icons.js";
+import { svg } from "../ui/elements.js";
 import { looksOf } from "../model/walls.js";
 
 /** @typedef {ReturnType<typeof looksOf>} Looks */

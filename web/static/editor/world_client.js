@@ -1,6 +1,6 @@
 // The office as the engine has it. It is read again after each change; edits, undo and redo go one after the other.
 
-import { plainly, sentence } from "../model/sentences.js";
+import { plainly, sentence } from "../ui/words.js";
 
 export class WorldClient {
   /**

@@ -1,7 +1,6 @@
 // One experiment in the gallery: its figure, what it asks, and the buttons.
 
-import { icon } from "../elements/icons.js";
-import { make } from "../elements/elements.js";
+import { icon, make } from "../ui/elements.js";
 import { engineWords, facts, firstEngine } from "../model/experiments.js";
 import { planOf } from "./plan.js";
 

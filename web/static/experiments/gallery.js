@@ -1,8 +1,8 @@
 // The experiments of the papers in a dialog: all of them as cards, or one with its trials.
 
-import { $ } from "../elements/dom.js";
-import { toast } from "../elements/toasts.js";
-import { sentence } from "../model/sentences.js";
+import { $ } from "../ui/elements.js";
+import { toast } from "../ui/toasts.js";
+import { sentence } from "../ui/words.js";
 import { get, reasons } from "../net/post.js";
 import { cardOf } from "./card.js";
 import { Grid } from "./grid.js";

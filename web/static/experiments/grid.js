@@ -1,9 +1,8 @@
 // What was run of one experiment: a grid of cells, and the trials of the cell that is chosen as dots.
 
-import { $ } from "../elements/dom.js";
-import { make } from "../elements/elements.js";
+import { $, make } from "../ui/elements.js";
 import { dotFace, dotWords, engineWords, firstEngine, lookOf, rowsOf, settingWords } from "../model/experiments.js";
-import { ended } from "../model/sentences.js";
+import { ended } from "../ui/words.js";
 
 const PLAYS = " A dot plays its trial from the moment that decided it.";
 

@@ -1,6 +1,6 @@
 // The plan of an experiment's world: stands for its figure until there is one.
 
-import { svg } from "../elements/icons.js";
+import { svg } from "../ui/elements.js";
 
 /** @param {PlanDrawing} plan */
 export function planOf({ width, depth, left, bottom, walls, way, places }) {

@@ -1,9 +1,9 @@
 // The note on the stage about the trial that is being watched: what is being done, how far it is, and what came of it.
 
-import { $, find } from "../elements/dom.js";
-import { toast } from "../elements/toasts.js";
+import { $, find } from "../ui/elements.js";
+import { toast } from "../ui/toasts.js";
 import { trialWords } from "../model/experiments.js";
-import { sentence } from "../model/sentences.js";
+import { sentence } from "../ui/words.js";
 
 export class Watched {
   /** @param {{ here: () => void, again: (wish: WatchExperiment) => void, more: () => void }} actions */

@@ -1,8 +1,7 @@
 // The run as a file for other programs: a dialog with the formats, and the download of the one that was chosen.
 
-import { make } from "../elements/elements.js";
-import { $ } from "../elements/dom.js";
-import { toast } from "../elements/toasts.js";
+import { $, make } from "../ui/elements.js";
+import { toast } from "../ui/toasts.js";
 import { reasons } from "../net/post.js";
 
 /** @typedef {{ format: string, words: string, refusal: string | null }} Offer */

@@ -1,6 +1,6 @@
 // Formulas as in the papers. A symbol that is a parameter leads to it in Tune.
 
-import { make } from "../elements/elements.js";
+import { make } from "../ui/elements.js";
 import { mathOf } from "./mathml.js";
 
 /**

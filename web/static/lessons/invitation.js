@@ -1,7 +1,6 @@
 // Where the class votes: large and with a QR code for whoever looks at a screen from afar, else a line below the question.
 
-import { $, find } from "../elements/dom.js";
-import { make } from "../elements/elements.js";
+import { $, find, make } from "../ui/elements.js";
 import { isOpen } from "../model/lessons.js";
 
 export class Invitation {

@@ -1,9 +1,7 @@
 // The lesson's card beside the stage: what this is, the question, what happens, and what came of it. The server says which state
 // the lesson is in; all pages show the same.
 
-import { $ } from "../elements/dom.js";
-import { make } from "../elements/elements.js";
-import { icon } from "../elements/icons.js";
+import { $, icon, make, renew, say } from "../ui/elements.js";
 import {
   doingWords,
   isBroken,
@@ -18,7 +16,6 @@ import {
   which,
 } from "../model/lessons.js";
 import { phone } from "../viewer/viewer.js";
-import { renew, say } from "../panel/parts.js";
 import { TABS, VIEWS } from "../shared.js";
 import { formulaBox } from "./formulas.js";
 import { setDone } from "./kept.js";

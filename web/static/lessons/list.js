@@ -1,11 +1,9 @@
 // All lessons in a dialog, chapter by chapter. A click begins one.
 
-import { $, find } from "../elements/dom.js";
-import { make } from "../elements/elements.js";
-import { icon } from "../elements/icons.js";
+import { $, find, icon, make } from "../ui/elements.js";
 import { cardFacts, chapters } from "../model/lessons.js";
 import { get, reasons } from "../net/post.js";
-import { sentence } from "../model/sentences.js";
+import { sentence } from "../ui/words.js";
 import { done } from "./kept.js";
 
 export class LessonList {

@@ -1,6 +1,6 @@
 // A small plan on which the class draws where it will end: by a click, or by arrow keys and Enter.
 
-import { svg } from "../elements/icons.js";
+import { svg } from "../ui/elements.js";
 import { outline, turned } from "../model/lessons.js";
 
 const STEP = 0.02; // of the plan's width, an arrow key

@@ -1,7 +1,6 @@
 // The question: options to choose from, or a plan to draw on, with the votes of the class. The card and the page for votes have it.
 
-import { make } from "../elements/elements.js";
-import { say } from "../panel/parts.js";
+import { make, say } from "../ui/elements.js";
 import { classWords, isOpen, shares } from "../model/lessons.js";
 import { drawingOf, Plan } from "./plan.js";
 

@@ -1,10 +1,8 @@
 // "Until": runs as fast as it can until something happens, and stops at that very tick.
 
-import { $ } from "../elements/dom.js";
-import { make } from "../elements/elements.js";
-import { toast } from "../elements/toasts.js";
-import { CHOICES, PACKETS, ending } from "../model/until.js";
-import { renew, say } from "../panel/parts.js";
+import { $, make, renew, say } from "../ui/elements.js";
+import { toast } from "../ui/toasts.js";
+import { CHOICES, ending, PACKETS } from "../model/until.js";
 
 /** @typedef {Omit<RunUntil, "type">} Wish */
 

@@ -3,7 +3,7 @@
 
 import { voteWords } from "../model/vote.js";
 import { reasons } from "../net/post.js";
-import { say } from "../panel/parts.js";
+import { say } from "../ui/elements.js";
 import { voter } from "./kept.js";
 import { Question } from "./question.js";
 

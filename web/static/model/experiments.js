@@ -1,6 +1,6 @@
 // The words and the order of the experiments' gallery. No DOM.
 
-import { clock } from "./clock.js";
+import { clock } from "../ui/words.js";
 
 /** @type {Record<EngineName, string>} */
 const ENGINES = { ours: "our rules", paper: "the paper's rules" };

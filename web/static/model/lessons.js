@@ -1,7 +1,6 @@
 // The words, groups and states of lessons. No DOM.
 
-import { clock } from "./clock.js";
-import { sentence } from "./sentences.js";
+import { clock, sentence } from "../ui/words.js";
 
 /** Each begins with the lesson named here; those behind it belong to it, too. */
 const GROUPS = new Map([
@@ -48,7 +47,7 @@ export function which(lesson, card) {
 }
 
 /** Whether a round is over and another one follows: what is over has left marks. @param {LessonView} lesson */
-export const isBetween = ({ state, marks }) => state === "predict" && marks.length > 0;
+const isBetween = ({ state, marks }) => state === "predict" && marks.length > 0;
 
 /** Whether a prediction can still be made. @param {LessonView} lesson */
 export const isOpen = (lesson) =>
@@ -80,7 +79,7 @@ export function doingWords(lesson) {
 }
 
 /** How many have voted. @param {LessonView["votes"]} votes */
-export const voters = ({ counts, points }) => counts.reduce((sum, count) => sum + count, 0) + points.length;
+const voters = ({ counts, points }) => counts.reduce((sum, count) => sum + count, 0) + points.length;
 
 /** Each option's share of all votes, 0 without any. @param {number[]} counts */
 export function shares(counts) {

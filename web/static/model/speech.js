@@ -1,7 +1,7 @@
 // What is read aloud to who cannot see the stage: events that matter, not too many at once. No DOM.
 
 import { nameOf, weightOf } from "./event_kinds.js";
-import { ended } from "./sentences.js";
+import { ended } from "../ui/words.js";
 
 const TOLD = new Set(
   /** @type {EventKind[]} */ ([

@@ -1,6 +1,6 @@
 // Which events have room on the timeline, which part of it is shown, and which event is next. No DOM.
 
-import { clock } from "./clock.js";
+import { clock } from "../ui/words.js";
 import { nameOf, weightOf } from "./event_kinds.js";
 
 const [LETTER_PX, AROUND_PX] = [7.2, 5]; // width of a letter, and room on either side of a name

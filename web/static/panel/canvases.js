@@ -1,8 +1,7 @@
 // Pictures in canvases: pixels as they are, enlarged without smoothing.
 
-import { make } from "../elements/elements.js";
-import { rgb } from "../model/pixels.js";
-import { picture } from "../model/pixels.js";
+import { make } from "../ui/elements.js";
+import { picture, rgb } from "../model/pixels.js";
 
 /** A colour of the page's theme. @param {string} name of a custom property, without its dashes */
 export const colourOf = (name) => rgb(getComputedStyle(document.documentElement).getPropertyValue(`--${name}`));
@@ -29,7 +28,7 @@ export class Picture {
     this.canvas.getContext("2d")?.putImageData(new ImageData(rgba, width, height), 0, 0);
   }
 
-  /** @param {import("../model/frames.js").Parcel | undefined} parcel */
+  /** @param {import("../net/connection.js").Parcel | undefined} parcel */
   async show(parcel) {
     if (!parcel) return;
     this.canvas.hidden = parcel.kind !== "jpeg" && parcel.values.length === 0; // the source has no such picture

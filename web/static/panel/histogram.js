@@ -1,7 +1,6 @@
 // Activity by heading: bars on a common floor, 0° to 360°.
 
-import { make } from "../elements/elements.js";
-import { svg } from "../elements/icons.js";
+import { make, svg } from "../ui/elements.js";
 import { bars } from "../model/pixels.js";
 
 export class Histogram {

@@ -1,6 +1,6 @@
 // A form that injects a packet by hand at the chosen column of pose cells, to watch how it competes with the others.
 
-import { make } from "../elements/elements.js";
+import { make } from "../ui/elements.js";
 import { note } from "./parts.js";
 
 export class InjectForm {

@@ -1,9 +1,9 @@
 // Inspect: one experience, view or column of pose cells, chosen on the plates, by number or by what is active now.
 
-import { make } from "../elements/elements.js";
+import { make, renew } from "../ui/elements.js";
 import { nameOf } from "../model/event_kinds.js";
 import { InjectForm } from "./inject_form.js";
-import { choice, heading, note, renew } from "./parts.js";
+import { choice, heading, note } from "./parts.js";
 import { Report } from "./report.js";
 import { SwitchList } from "./switch_list.js";
 

@@ -1,7 +1,6 @@
 // One parameter as a control: its name, symbol and unit, its value, and a way back to the default.
 
-import { labelled, make } from "../elements/elements.js";
-import { icon } from "../elements/icons.js";
+import { icon, labelled, make } from "../ui/elements.js";
 import { isDefault, printed, shortName } from "../model/knobs.js";
 
 /** @typedef {import("../model/knobs.js").Parameter} Parameter */

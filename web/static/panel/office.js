@@ -1,8 +1,8 @@
 // Office: what moves in this world, one switch each, the robot's presets, and the places with a name. After a refusal a switch goes back.
 
-import { make } from "../elements/elements.js";
+import { make, renew, say } from "../ui/elements.js";
 import { Knob } from "./knob.js";
-import { heading, note, renew, say } from "./parts.js";
+import { heading, note } from "./parts.js";
 import { TagList } from "./tag_list.js";
 
 const OWN = "own settings";

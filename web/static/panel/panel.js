@@ -1,7 +1,6 @@
 // The side panel: seven tabs, of which one is open. What it shows comes over the page's stream, for the open tab alone.
 
-import { labelled, make } from "../elements/elements.js";
-import { icon } from "../elements/icons.js";
+import { icon, labelled, make } from "../ui/elements.js";
 import { InspectTab } from "./inspect.js";
 import { MemoryTab } from "./memory.js";
 import { OfficeTab } from "./office.js";

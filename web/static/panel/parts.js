@@ -1,6 +1,6 @@
 // Small pieces of the panel: tables, notes, choices and bars. What the server says only ever becomes text.
 
-import { make } from "../elements/elements.js";
+import { make, say } from "../ui/elements.js";
 
 /** @param {string} words */
 export const heading = (words) => make("h2", { textContent: words });
@@ -10,11 +10,6 @@ export const note = (words) => make("p", { className: "quiet", textContent: word
 
 /** @param {string} words */
 export const caption = (words) => make("p", { className: "caption", textContent: words });
-
-/** Sets a text only when it differs, so that one being read or selected stays. @param {Node} place @param {string} text */
-export function say(place, text) {
-  if (place.textContent !== text) place.textContent = text;
-}
 
 /** @typedef {{ title: string, rows: [string, string][], empty: string }} TableData */
 
@@ -89,22 +84,6 @@ export class Bar {
     this.fill.style.width = `${(100 * Math.min(Math.max(share, 0), 1)).toFixed(1)}%`;
     this.box.dataset.tone = tone;
   }
-}
-
-/**
- * Draw a part of the panel anew when its data has changed; a focused button keeps the focus.
- * @param {HTMLElement} box
- * @param {unknown} data
- * @param {() => Node[]} draw
- */
-export function renew(box, data, draw) {
-  const text = JSON.stringify(data);
-  if (box.dataset.shown === text) return;
-  box.dataset.shown = text;
-  const held = box.contains(document.activeElement) ? /** @type {HTMLElement} */ (document.activeElement) : null;
-  const key = held?.dataset.key;
-  box.replaceChildren(...draw());
-  if (key) /** @type {HTMLElement | null} */ (box.querySelector(`[data-key="${CSS.escape(key)}"]`))?.focus();
 }
 
 /**

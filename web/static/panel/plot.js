@@ -1,6 +1,6 @@
 // A plot against the session's time, drawn by uPlot, which is fetched when the first plot is made.
 
-import { make } from "../elements/elements.js";
+import { make } from "../ui/elements.js";
 import { saveButtons } from "../share/pictures.js";
 
 /** @typedef {{ label: string, colour: string, digits: number, dash?: number[] }} Line `colour`: a custom property of the page */

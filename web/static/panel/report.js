@@ -1,10 +1,10 @@
 // The report on one experience, one view or one column of pose cells.
 
-import { make } from "../elements/elements.js";
+import { make, renew, say } from "../ui/elements.js";
 import { Picture } from "./canvases.js";
 import { Histogram } from "./histogram.js";
 import { Why } from "./why.js";
-import { Table, caption, choice, heading, note, renew, say } from "./parts.js";
+import { caption, choice, heading, note, Table } from "./parts.js";
 
 const TITLES = { experience: "experience", view: "local view cell", cell: "pose cells at", why: "why, at" };
 

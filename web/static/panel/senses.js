@@ -1,15 +1,15 @@
 // Senses: the camera's image, the stored view most like it, how different they are, and which cells are active.
 
-import { make } from "../elements/elements.js";
+import { make, say } from "../ui/elements.js";
 import { fromAbove } from "../model/pixels.js";
-import { Picture, colourOf } from "./canvases.js";
+import { colourOf, Picture } from "./canvases.js";
 import { Histogram } from "./histogram.js";
-import { Bar, caption, say } from "./parts.js";
+import { Bar, caption } from "./parts.js";
 import { ViewStrip } from "./view_strip.js";
 
 const PACKETS = ["packet-1", "packet-2", "packet-3", "packet-4"];
 
-/** @typedef {Record<string, import("../model/frames.js").Parcel>} Arrays */
+/** @typedef {Record<string, import("../net/connection.js").Parcel>} Arrays */
 
 export class SensesTab {
   /** @param {(wish: Record<string, number>) => void} inspect */

@@ -1,6 +1,6 @@
 // The switches of one tab that all pages share (web/switches.py).
 
-import { make } from "../elements/elements.js";
+import { make } from "../ui/elements.js";
 
 /** @typedef {{ name: string, tab: string, words: string, hint: string, on: boolean }} Switch */
 

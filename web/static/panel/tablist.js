@@ -1,6 +1,6 @@
 // Tabs for the keyboard: one of them is in the tab order, and the arrows go from one to the next.
 
-import { make } from "../elements/elements.js";
+import { make } from "../ui/elements.js";
 
 export class TabList {
   /** @param {readonly string[]} names @param {(name: string) => void} chosen by a person */

@@ -1,7 +1,7 @@
 // The places that people have named: a form that names the one where the robot is, and a button for each to send it there.
 
-import { make, removeButton } from "../elements/elements.js";
-import { heading, note, renew } from "./parts.js";
+import { make, removeButton, renew } from "../ui/elements.js";
+import { heading, note } from "./parts.js";
 
 export class TagList {
   /** @param {import("./panel.js").Ask} ask */

@@ -1,8 +1,8 @@
 // Tick: one tick stage by stage, and what the parts of a tick cost.
 
-import { make } from "../elements/elements.js";
+import { make, say } from "../ui/elements.js";
 import { partWords, shareOf, tickWords } from "../model/timings.js";
-import { Bar, heading, note, say } from "./parts.js";
+import { Bar, heading, note } from "./parts.js";
 
 const NOTHING = "Press next stage: the session pauses, and you go through one tick and see what each stage did.";
 const TRUE =

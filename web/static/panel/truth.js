@@ -1,7 +1,7 @@
 // Truth: how far map and odometry are from the robot's true place, and how far the map is from its own links.
 
-import { make } from "../elements/elements.js";
-import { Table, heading, note, say } from "./parts.js";
+import { make, say } from "../ui/elements.js";
+import { heading, note, Table } from "./parts.js";
 import { Plot } from "./plot.js";
 import { SwitchList } from "./switch_list.js";
 

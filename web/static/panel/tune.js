@@ -1,9 +1,8 @@
 // Tune: every parameter, by group; a search finds it by any of its words.
 
-import { make } from "../elements/elements.js";
+import { make, say } from "../ui/elements.js";
 import { grouped, means } from "../model/knobs.js";
 import { Knob } from "./knob.js";
-import { say } from "./parts.js";
 
 /** @typedef {import("../model/knobs.js").Parameter} Parameter */
 

@@ -1,8 +1,8 @@
 // The local view cells as a strip of squares. A click on a square inspects its first view, and the keys do the same.
 
-import { make } from "../elements/elements.js";
-import { STRIP, viewStrip, viewsASquare } from "../model/pixels.js";
-import { Picture, colourOf } from "./canvases.js";
+import { make } from "../ui/elements.js";
+import { STRIP, viewsASquare, viewStrip } from "../model/pixels.js";
+import { colourOf, Picture } from "./canvases.js";
 
 /** @type {Record<string, number>} */
 const STEPS = { ArrowRight: 1, ArrowLeft: -1, ArrowDown: STRIP.columns, ArrowUp: -STRIP.columns };

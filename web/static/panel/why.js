@@ -1,9 +1,8 @@
 // Why something happened: the chain of what led to it, the packets before and after, and the views that played a part.
 
-import { make } from "../elements/elements.js";
-import { svg } from "../elements/icons.js";
+import { make, renew, svg } from "../ui/elements.js";
 import { Picture } from "./canvases.js";
-import { caption, choice, heading, note, renew } from "./parts.js";
+import { caption, choice, heading, note } from "./parts.js";
 
 const MOST_VIEWS = 4;
 

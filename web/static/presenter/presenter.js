@@ -1,6 +1,6 @@
 // The presenter's mode: the panel away, larger type, a spotlight that follows the pointer, next and back by a clicker's keys.
 
-import { $ } from "../elements/dom.js";
+import { $ } from "../ui/elements.js";
 
 const VIEWS = /** @type {const} */ (["all", "office", "pose", "map"]);
 

@@ -1,6 +1,6 @@
 // Where the session comes from: an office that is simulated, or a recording. What a recording lacks is not on the page.
 
-import { $, find } from "../elements/dom.js";
+import { $, find } from "../ui/elements.js";
 
 const OFFICE_TABS = ["Office"];
 

@@ -1,6 +1,6 @@
 // A recording that was dropped on the page or chosen: it is sent as it is, and the server says what is wrong with it.
 
-import { ended, megabytes } from "../model/sentences.js";
+import { ended, megabytes } from "../ui/words.js";
 
 const RECORDING =
   /\.(mcap|bag|db3|log|clf|carmen|mp4|avi|mkv|mov|webm|m4v|mpe?g|tar|tgz|tbz2?|txz|zip|7z|rar)(\.(gz|bz2|xz|zst))?$/i;

@@ -1,6 +1,6 @@
 // Saves what the page has made as a file.
 
-import { make } from "../elements/elements.js";
+import { make } from "../ui/elements.js";
 
 /** @param {Blob} blob @param {string} name */
 export function download(blob, name) {

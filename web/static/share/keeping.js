@@ -1,12 +1,12 @@
 // The menu beside the views: what can be kept of the moment that is shown, and shared. It also opens what others have shared.
 
-import { $, find } from "../elements/dom.js";
+import { $, find } from "../ui/elements.js";
 import { Opening } from "./opening.js";
 import { Share } from "./share.js";
-import { StageFilm, naming } from "./stage_film.js";
+import { naming, StageFilm } from "./stage_film.js";
 import { reasons } from "../net/post.js";
 import { savePng, saveSvg } from "./pictures.js";
-import { toast } from "../elements/toasts.js";
+import { toast } from "../ui/toasts.js";
 
 export class Keeping {
   /**

@@ -1,10 +1,9 @@
 // Opens what somebody else has made of a moment: from the address of the page, from a file, and shows it as they saw it.
 
-import { $, find } from "../elements/dom.js";
-import { setIcon } from "../elements/icons.js";
+import { $, find, setIcon } from "../ui/elements.js";
 import { linkIn, situationWords } from "../model/moments.js";
 import { post } from "../net/post.js";
-import { toast } from "../elements/toasts.js";
+import { toast } from "../ui/toasts.js";
 
 const ICONS = /** @type {const} */ ({ playing: "share", same: "check", other: "warn", stopped: "warn" });
 

@@ -1,9 +1,9 @@
 // Pictures as files: vector pictures as they are, or drawn into pixels. Their names tell run and moment.
 
-import { make } from "../elements/elements.js";
+import { make } from "../ui/elements.js";
 import { download } from "./download.js";
 import { plotSvg } from "../model/plot_svg.js";
-import { toast } from "../elements/toasts.js";
+import { toast } from "../ui/toasts.js";
 
 const SHARP = 2; // pixels of a PNG for each of the vector picture
 

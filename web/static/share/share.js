@@ -1,11 +1,11 @@
 // The moment that is shown, for somebody else: as a link, as a file, and as lines of Python.
 
-import { $ } from "../elements/dom.js";
+import { $ } from "../ui/elements.js";
 import { download } from "./download.js";
 import { fine } from "../model/timeline.js";
 import { momentWords, sizeWords } from "../model/moments.js";
 import { post } from "../net/post.js";
-import { toast } from "../elements/toasts.js";
+import { toast } from "../ui/toasts.js";
 
 export class Share {
   /** @param {() => { plate: ViewName, tab: string, page: string }} look what this page shows */

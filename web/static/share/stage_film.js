@@ -1,12 +1,11 @@
 // The plates as they are on the stage: a picture of them, and a film of a stretch of time, made in this browser from viser's canvas.
 
-import { $, find } from "../elements/dom.js";
+import { $, find, make } from "../ui/elements.js";
 import { download } from "./download.js";
-import { make } from "../elements/elements.js";
 import { saveCanvas, shown } from "./pictures.js";
 import { fine } from "../model/timeline.js";
 import { nameOfMoment } from "../model/moments.js";
-import { toast } from "../elements/toasts.js";
+import { toast } from "../ui/toasts.js";
 
 const TYPES = ["video/webm;codecs=vp9", "video/webm;codecs=vp8", "video/webm", "video/mp4"]; // as a browser knows them
 const FPS = 30;

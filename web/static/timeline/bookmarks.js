@@ -1,8 +1,6 @@
 // Moments that somebody has named: a list in the box of events, and marks on the timeline.
 
-import { $ } from "../elements/dom.js";
-import { labelled, make } from "../elements/elements.js";
-import { icon, svg } from "../elements/icons.js";
+import { $, icon, labelled, make, svg } from "../ui/elements.js";
 import { fine } from "../model/timeline.js";
 
 export class Bookmarks {

@@ -1,8 +1,6 @@
 // Two branches side by side on one clock: both maps, both packets, both errors, and where they differ first.
 
-import { $ } from "../elements/dom.js";
-import { make } from "../elements/elements.js";
-import { svg } from "../elements/icons.js";
+import { $, make, svg } from "../ui/elements.js";
 import { fine } from "../model/timeline.js";
 import { frameOf, lying } from "../model/side_maps.js";
 

@@ -1,9 +1,7 @@
 // All events as a list that can be filtered by kind; a click goes to that moment.
 
-import { $ } from "../elements/dom.js";
-import { make } from "../elements/elements.js";
-import { svg } from "../elements/icons.js";
-import { clock } from "../model/clock.js";
+import { $, make, svg } from "../ui/elements.js";
+import { clock } from "../ui/words.js";
 import { nameOf } from "../model/event_kinds.js";
 import { times } from "../model/timeline.js";
 import { markAt } from "./events.js";

@@ -1,7 +1,7 @@
 // The marks of events, as elements.
 
 import { kinds, markOf, nameOf } from "../model/event_kinds.js";
-import { svg } from "../elements/icons.js";
+import { svg } from "../ui/elements.js";
 
 /** @param {string} kind @param {number} x @param {number} y */
 export function markAt(kind, x, y) {

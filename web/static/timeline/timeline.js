@@ -1,10 +1,8 @@
 // The timeline: events as marks of different shape and colour, with names where there is room, the moment that is shown, and the
 // branches. Dragging it shows the past. Marks that are pointed at or touched say more.
 
-import { $ } from "../elements/dom.js";
-import { make } from "../elements/elements.js";
-import { svg } from "../elements/icons.js";
-import { clock, tickTimesIn } from "../model/clock.js";
+import { $, make, svg } from "../ui/elements.js";
+import { clock, tickTimesIn } from "../ui/words.js";
 import { nameOf } from "../model/event_kinds.js";
 import { counted, fine, labelsOf, marksOf, parted, whole, within, words, zoomed } from "../model/timeline.js";
 import { Bookmarks } from "./bookmarks.js";

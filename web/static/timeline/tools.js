@@ -1,9 +1,7 @@
 // The buttons above the timeline: steps, events, marks of a loop, branches, going on from the past and back to now.
 
-import { $, find } from "../elements/dom.js";
-import { labelled, make } from "../elements/elements.js";
-import { icon } from "../elements/icons.js";
-import { clock } from "../model/clock.js";
+import { $, find, icon, labelled, make } from "../ui/elements.js";
+import { clock } from "../ui/words.js";
 import { fine, nextEvent } from "../model/timeline.js";
 
 export class Tools {

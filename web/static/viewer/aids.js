@@ -1,7 +1,7 @@
 // What helps to see on the stage: a camera that goes with the robot, vision off and on, and the last loop closure once more.
 
-import { $, find } from "../elements/dom.js";
-import { clock } from "../model/clock.js";
+import { $, find } from "../ui/elements.js";
+import { clock } from "../ui/words.js";
 
 export class Aids {
   /**

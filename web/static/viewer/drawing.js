@@ -1,8 +1,8 @@
 // The plates as the server draws them (SVG), in the stage's place: from the first paint until viser has drawn a frame, and whenever
 // it cannot draw. The drawing goes on with the run, and a click on it is one on the plates.
 
-import { $, find } from "../elements/dom.js";
-import { toast } from "../elements/toasts.js";
+import { $, find } from "../ui/elements.js";
+import { toast } from "../ui/toasts.js";
 
 const ANEW_MS = 1000; // a picture costs the server some hundredths of a second
 const FADE_MS = 400;

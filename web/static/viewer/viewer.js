@@ -1,8 +1,8 @@
 // The plates in 3-D: viser's client in a frame of our own origin, and the view buttons. The frame belongs to one program and one
 // graphics context; when either is another, it is thrown away and built anew. While it has drawn nothing, the drawing stands there.
 
-import { $, find } from "../elements/dom.js";
-import { toast } from "../elements/toasts.js";
+import { $, find } from "../ui/elements.js";
+import { toast } from "../ui/toasts.js";
 import { takeClicks } from "./clicks.js";
 import { Drawing } from "./drawing.js";
 import { takePinches } from "./pinch.js";

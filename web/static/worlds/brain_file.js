@@ -1,8 +1,8 @@
 // A saved brain as a file: it is sent as it is; the server says in a sentence what is wrong with it.
 
-import { $ } from "../elements/dom.js";
-import { toast } from "../elements/toasts.js";
-import { sentence } from "../model/sentences.js";
+import { $ } from "../ui/elements.js";
+import { toast } from "../ui/toasts.js";
+import { sentence } from "../ui/words.js";
 
 /** The run begins anew with the brain of the file that is chosen. */
 export function takeBrainFiles() {

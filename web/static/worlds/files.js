@@ -1,9 +1,9 @@
 // Files dropped on the page or chosen: worlds and floor plans. The server says what is wrong with one.
 
-import { $ } from "../elements/dom.js";
+import { $ } from "../ui/elements.js";
 import { chosen, dropped, isRecording, play, playFolder } from "../recordings/upload.js";
-import { ended, megabytes } from "../model/sentences.js";
-import { toast } from "../elements/toasts.js";
+import { ended, megabytes } from "../ui/words.js";
+import { toast } from "../ui/toasts.js";
 
 const PICTURE = /\.(pgm|png|bmp|jpe?g|ppm|pbm|webp|tiff?|gif)$/i;
 const MOST_BYTES = 16_000_000;

@@ -1,9 +1,9 @@
 // The run that was cut off, or the brain that an earlier program kept: a quiet offer over the plates, until somebody has answered it on any page.
 
-import { $ } from "../elements/dom.js";
-import { experiences, keptWords } from "../model/sentences.js";
+import { $ } from "../ui/elements.js";
+import { experiences, keptWords } from "../ui/words.js";
 import { post } from "../net/post.js";
-import { toast } from "../elements/toasts.js";
+import { toast } from "../ui/toasts.js";
 
 const LOOK_MS = 400;
 

@@ -1,9 +1,9 @@
 // The dialog that begins a new, empty world.
 
-import { $ } from "../elements/dom.js";
-import { freeName } from "../model/sentences.js";
+import { $ } from "../ui/elements.js";
+import { freeName } from "../ui/words.js";
 import { post, worlds } from "../net/post.js";
-import { toast } from "../elements/toasts.js";
+import { toast } from "../ui/toasts.js";
 
 export class NewWorld {
   /**

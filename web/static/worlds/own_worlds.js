@@ -1,8 +1,6 @@
 // The worlds that have been saved, in the dialog that opens files: to open, to delete, and to bring back.
 
-import { $, find } from "../elements/dom.js";
-import { icon } from "../elements/icons.js";
-import { labelled, make } from "../elements/elements.js";
+import { $, find, icon, labelled, make } from "../ui/elements.js";
 import { post, worlds } from "../net/post.js";
 
 export class OwnWorlds {

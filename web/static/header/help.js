@@ -1,9 +1,7 @@
 // The help: what the plates show, and every key by group, written from the table by which the page acts.
 
-import { $ } from "../elements/dom.js";
-import { make } from "../elements/elements.js";
-import { DRIVING } from "../model/key_meanings.js";
-import { GROUPS, written } from "../model/key_table.js";
+import { $, make } from "../ui/elements.js";
+import { DRIVING, GROUPS, written } from "../driving/keys.js";
 
 const ARROWS = ["↑", "←", "↓", "→"];
 
@@ -35,7 +33,7 @@ export class Help {
   }
 }
 
-/** @param {import("../model/key_table.js").Group} group @param {string[]} driving */
+/** @param {import("../driving/keys.js").Group} group @param {string[]} driving */
 function groupOf({ title, rows }, driving) {
   const drive = { keys: [...ARROWS, ...driving], words: "drive while held" };
   const all = title === "Robot" ? [drive, ...rows] : rows;

@@ -1,9 +1,8 @@
 // The first visit: what this is, and three things to do, ticked off as they happen. Put away, it stays away; the help brings
 // it back.
+// The three things that a newcomer does, and when each is done. No DOM.
 
-import { $, find } from "../elements/dom.js";
-import { setIcon } from "../elements/icons.js";
-import { FirstMinute } from "../model/first_minute.js";
+import { $, find, keep, kept, setIcon } from "../ui/elements.js";
 
 const KEY = "first minute";
 const STRIDE = 300; // ticks between two looks at how far it is
@@ -29,7 +28,7 @@ export class FirstMinuteCard {
       this.things = new FirstMinute();
       this.show(true);
     });
-    this.show(!was(KEY));
+    this.show(kept(KEY) === null);
   }
 
   /** @param {boolean} on */
@@ -37,7 +36,7 @@ export class FirstMinuteCard {
     this.box.hidden = !on;
     document.body.dataset.first = String(on);
     if (!on) {
-      remember(KEY);
+      keep(KEY, "seen");
       for (const say of this.later.splice(0)) say();
     }
     this.draw();
@@ -123,20 +122,35 @@ export class FirstMinuteCard {
   }
 }
 
-/** @param {string} key */
-function was(key) {
-  try {
-    return localStorage.getItem(key) !== null;
-  } catch {
-    return false; // this browser stores nothing
-  }
-}
+export class FirstMinute {
+  explored = false;
+  reached = false;
+  found = false;
+  #moved = false; // kidnapped, and not found again
 
-/** @param {string} key */
-function remember(key) {
-  try {
-    localStorage.setItem(key, "seen");
-  } catch {
-    // It comes again with the next visit.
+  /** Ticks of exploring before the robot knows enough to be sent somewhere: three minutes. */
+  static TICKS = 1800;
+
+  /** @param {number} tick */
+  at(tick) {
+    this.explored ||= tick >= FirstMinute.TICKS;
+  }
+
+  /** @param {{ kind: string }[]} events those that have just happened */
+  hear(events) {
+    for (const { kind } of events) {
+      if (kind === "arrived") this.reached = true;
+      else if (kind === "kidnap") this.#moved = true;
+      else if (kind === "recovered" && this.#moved) this.found = true;
+    }
+  }
+
+  /** Whether it is on its way back to where it knows its place. */
+  get searches() {
+    return this.#moved && !this.found;
+  }
+
+  get done() {
+    return this.explored && this.reached && this.found;
   }
 }

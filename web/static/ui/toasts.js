@@ -1,11 +1,9 @@
 // Short sentences over the plates: what was done, what was refused, what people should know. Text only, never HTML.
 // A sentence stays long enough to be read, and for as long as somebody points at it; a click or Escape removes it.
 
-import { $ } from "./dom.js";
-import { icon } from "./icons.js";
+import { $, icon } from "./elements.js";
 
 const MOST = 4;
-const place = $("messages");
 let count = 0; // of all toasts so far
 
 /** @param {string} text @param {{ bad?: boolean, notice?: boolean, stays?: boolean }} [kind] */
@@ -41,7 +39,7 @@ export function dismissToast() {
 // Oldest first.
 const all = () => {
   /** @type {NodeListOf<HTMLElement>} */
-  const boxes = place.querySelectorAll(".toast");
+  const boxes = $("messages").querySelectorAll(".toast");
   return [...boxes].sort((a, b) => Number(a.dataset.number) - Number(b.dataset.number));
 };
 
@@ -53,6 +51,7 @@ function leave(box, after_ms) {
 
 // Keeps no more than there is room for; those marked to stay go last.
 function makeRoom() {
+  const place = $("messages");
   for (;;) {
     const boxes = all();
     if (boxes.length < 2 || (boxes.length <= MOST && place.scrollHeight <= place.clientHeight)) return;
