@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { away } from "../../../web/static/model/geometry.js";
-import { pinched } from "../../../web/static/model/pinch.js";
+import { pinched } from "../../../web/static/viewer/fingers.js";
 import { ViewBox } from "../../../web/static/model/view_box.js";
 import { chance, path, points, segment } from "./made.js";
 

@@ -88,7 +88,7 @@ export class Lesson {
     else if (lesson.state === "showing") this.look();
     if (lesson.state === "compared") setDone(lesson.name);
     if (before && lesson.state !== before.state) $("lesson-body").scrollTop = 0;
-    if (phone.matches) this.fold(lesson.state === "showing");
+    if (phone()) this.fold(lesson.state === "showing");
   }
 
   /** All texts of the lesson, and the focus into its card. @param {string} name */

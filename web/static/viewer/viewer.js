@@ -3,12 +3,9 @@
 
 import { $, find } from "../ui/elements.js";
 import { toast } from "../ui/toasts.js";
-import { takeClicks } from "./clicks.js";
+import { takeClicks, takePinches } from "./fingers.js";
 import { Drawing } from "./drawing.js";
-import { takePinches } from "./pinch.js";
-import { restBetweenFrames } from "./resting.js";
-import { fewerPixels, hasWebgl, spareSoftware } from "./software.js";
-import { firstFrame } from "./waking.js";
+import { fewerPixels, firstFrame, isSoftware, restBetweenFrames, spareSoftware, whoDraws } from "./frames.js";
 
 const LATE_MS = 20_000;
 const ON = "turn on hardware acceleration in the browser's settings and load this page again.";
@@ -19,7 +16,7 @@ const WORDS = {
   lost: "The browser has taken the graphics away; until they are back, this is a drawing.",
 };
 
-export const phone = window.matchMedia("(max-width: 760px), (pointer: coarse) and (max-height: 500px)");
+export const phone = () => window.matchMedia("(max-width: 760px), (pointer: coarse) and (max-height: 500px)").matches;
 
 export class Viewer extends EventTarget {
   /** @param {import("../net/connection.js").Connection} link @param {import("../driving/keys.js").Keys} keys */
@@ -28,8 +25,10 @@ export class Viewer extends EventTarget {
     this.link = link;
     this.keys = keys;
     this.frame = $("stage");
+    this.drawer = whoDraws();
+    this.soft = this.drawer !== null && isSoftware(this.drawer);
     /** @type {ViewName} */
-    this.view = phone.matches ? "map" : "all";
+    this.view = phone() ? "map" : "all";
     /** @type {number | string | null} */
     this.launch = null; // the server's, to notice that it has started anew
     this.buttons = /** @type {HTMLElement[]} */ ([...document.querySelectorAll("[data-view]")]);
@@ -48,10 +47,10 @@ export class Viewer extends EventTarget {
   build() {
     clearTimeout(this.late);
     this.frame.classList.remove("awake");
-    this.drawing.show(hasWebgl ? WORDS.waking : WORDS.off);
-    if (!hasWebgl) return;
+    this.drawing.show(this.drawer === null ? WORDS.off : WORDS.waking);
+    if (this.drawer === null) return;
     this.late = setTimeout(() => this.drawing.say(WORDS.late), LATE_MS);
-    const path = `/viser/?websocket=ws://${location.host}/viser/ws/${this.link.page}&hideViserLogo${fewerPixels()}`;
+    const path = `/viser/?websocket=ws://${location.host}/viser/ws/${this.link.page}&hideViserLogo${this.soft ? fewerPixels() : ""}`;
     this.frame.contentWindow?.location.replace(path); // not a page more to go back through
   }
 
@@ -112,7 +111,7 @@ export class Viewer extends EventTarget {
     inside.addEventListener("webglcontextrestored", () => this.build(), true);
     firstFrame(inside).then(() => this.wake(paper)); // it looks at every frame, before the loop of them may rest
     const editor = $("editor");
-    const wake = restBetweenFrames(inside, () => !editor.hidden, spareSoftware(inside));
+    const wake = restBetweenFrames(inside, () => !editor.hidden, this.soft ? spareSoftware(inside) : () => null);
     new MutationObserver(wake).observe(editor, { attributeFilter: ["hidden"] });
     takePinches(inside);
     if (!this.link.watches) takeClicks(inside, (at, shift) => this.click(at, shift));
