@@ -1,7 +1,54 @@
-// Pictures in canvases: pixels as they are, enlarged without smoothing.
+// Pictures made of numbers: pixels in a canvas as they are, enlarged without smoothing, and bars.
 
-import { make } from "../ui/elements.js";
-import { picture, rgb } from "../model/pixels.js";
+import { make, svg } from "../ui/elements.js";
+
+/**
+ * @typedef {[number, number, number]} Rgb
+ * @typedef {{ width: number, height: number, rgba: Uint8ClampedArray<ArrayBuffer> }} Pixels
+ */
+
+/** @param {string} colour "#rgb" or "#rrggbb" @returns {Rgb} */
+export function rgb(colour) {
+  const digits = colour.trim().slice(1);
+  const pairs = digits.length === 3 ? [...digits].map((digit) => digit + digit) : (digits.match(/../g) ?? []);
+  const [red = 0, green = 0, blue = 0] = pairs.map((pair) => Number.parseInt(pair, 16));
+  return [red, green, blue];
+}
+
+/** `share` of the way from one colour to another. @param {Rgb} from @param {Rgb} to @param {number} share @returns {Rgb} */
+export function mix(from, to, share) {
+  const [red, green, blue] = from.map((value, k) => value + (to[k] - value) * share);
+  return [red, green, blue];
+}
+
+/**
+ * A picture of grey levels (height, width) or colours (height, width, 3), as they are.
+ * @param {ArrayLike<number>} values
+ * @param {number[]} shape
+ * @returns {Pixels}
+ */
+export function picture(values, [height, width, channels = 1]) {
+  const rgba = new Uint8ClampedArray(4 * width * height);
+  for (let k = 0; k < width * height; k++) {
+    for (let c = 0; c < 3; c++) rgba[4 * k + c] = values[channels * k + (channels === 3 ? c : 0)];
+    rgba[4 * k + 3] = 255;
+  }
+  return { width, height, rgba };
+}
+
+/**
+ * Bars on a common floor, as the path of an SVG of `values.length` by 100. The tallest reaches the top.
+ * @param {ArrayLike<number>} values
+ */
+export function bars(values) {
+  const tallest = Math.max(1e-9, ...Array.from(values));
+  let path = "";
+  for (let k = 0; k < values.length; k++) {
+    const height = (100 * values[k]) / tallest;
+    if (height > 0.5) path += `M${(k + 0.08).toFixed(2)} 100V${(100 - height).toFixed(1)}h.84V100z`;
+  }
+  return path;
+}
 
 /** A colour of the page's theme. @param {string} name of a custom property, without its dashes */
 export const colourOf = (name) => rgb(getComputedStyle(document.documentElement).getPropertyValue(`--${name}`));
@@ -21,7 +68,7 @@ export class Picture {
     return this;
   }
 
-  /** @param {import("../model/pixels.js").Pixels} pixels */
+  /** @param {Pixels} pixels */
   draw({ width, height, rgba }) {
     this.turn += 1;
     this.size(width, height);
@@ -47,5 +94,26 @@ export class Picture {
   size(width, height) {
     if (this.canvas.width !== width) this.canvas.width = width;
     if (this.canvas.height !== height) this.canvas.height = height;
+  }
+}
+
+/** Activity by heading: bars on a common floor, 0° to 360°. */
+export class Histogram {
+  /** @param {string} words */
+  constructor(words) {
+    this.path = svg("path", {});
+    this.drawing = svg(
+      "svg",
+      { role: "img", "aria-label": words, preserveAspectRatio: "none", class: "bars" },
+      this.path,
+    );
+    const ticks = ["0°", "180°", "360°"].map((tick) => make("span", { textContent: tick }));
+    this.box = make("div", { className: "histogram" }, this.drawing, make("div", { className: "ticks" }, ...ticks));
+  }
+
+  /** @param {ArrayLike<number>} values */
+  show(values) {
+    this.drawing.setAttribute("viewBox", `0 0 ${values.length} 100`);
+    this.path.setAttribute("d", bars(values));
   }
 }

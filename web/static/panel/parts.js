@@ -1,4 +1,4 @@
-// Small pieces of the panel: tables, notes, choices and bars. What the server says only ever becomes text.
+// Small pieces of the panel: tables, notes, choices, bars and switches. What the server says only ever becomes text.
 
 import { make, say } from "../ui/elements.js";
 
@@ -99,4 +99,34 @@ export function choice(kind, number, text, inspect) {
   button.setAttribute("aria-label", `${text}: inspect ${kind} ${number}`);
   button.addEventListener("click", () => inspect({ [kind]: number }));
   return button;
+}
+
+/** @typedef {{ name: string, tab: string, words: string, hint: string, on: boolean }} Switch */
+
+export class SwitchList {
+  /** @param {string} tab @param {import("./panel.js").Ask} ask */
+  constructor(tab, ask) {
+    this.tab = tab;
+    this.ask = ask;
+    this.box = make("div", { className: "switches" });
+    /** @type {Map<string, HTMLInputElement>} */
+    this.inputs = new Map();
+  }
+
+  /** @param {{ switches: Switch[] }} data */
+  show({ switches }) {
+    for (const of of switches.filter(({ tab }) => tab === this.tab)) {
+      const input = this.inputs.get(of.name) ?? this.add(of);
+      input.checked = of.on;
+    }
+  }
+
+  /** @param {Switch} of */
+  add({ name, words, hint }) {
+    const input = make("input", { type: "checkbox" });
+    input.addEventListener("change", () => this.ask({ type: "switch", name, on: input.checked }));
+    this.box.append(make("label", { className: "check", title: hint }, input, make("span", { textContent: words })));
+    this.inputs.set(name, input);
+    return input;
+  }
 }

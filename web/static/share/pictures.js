@@ -47,7 +47,7 @@ const fileWord = (words) => words.toLowerCase().replace(/[^a-z0-9]+/g, "-");
 /**
  * Two buttons that save a plot.
  * @param {string} words what it shows
- * @param {() => { columns: ArrayLike<number>[] | null, lines: import("./../panel/plot.js").Line[] }} ask
+ * @param {() => { columns: ArrayLike<number>[] | null, lines: import("../panel/truth.js").Line[] }} ask
  */
 export function saveButtons(words, ask) {
   const property = (/** @type {string} */ name) =>
