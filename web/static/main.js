@@ -1,7 +1,7 @@
 // The page: puts the parts together and turns clicks and keys into commands. The server is the only truth.
 
 import { $, find } from "./ui/elements.js";
-import { BesideStrip } from "./beside/beside.js";
+import { BesideStrip } from "./brains/beside.js";
 import { FirstMinuteCard } from "./header/first_minute.js";
 import { HandDrive } from "./driving/drive.js";
 import { Aids, Presenter } from "./viewer/aids.js";
@@ -9,13 +9,12 @@ import { Editor } from "./editor/editor.js";
 import { Exports } from "./export/export.js";
 import { Files } from "./worlds/files.js";
 import { Gallery } from "./experiments/gallery.js";
-import { takeBrainFiles } from "./worlds/brain_file.js";
+import { KeptBrain, takeBrainFiles } from "./brains/kept_brain.js";
 import { Help } from "./header/help.js";
 import { closeOpenMenu, Header, Theming } from "./header/header.js";
 import { actOf, Keys } from "./driving/keys.js";
 import { Lesson } from "./lessons/lesson.js";
 import { LessonList } from "./lessons/list.js";
-import { KeptBrain } from "./worlds/kept_brain.js";
 import { Connection } from "./net/connection.js";
 import { sentence } from "./ui/words.js";
 import { NewWorld } from "./worlds/new_world.js";
@@ -24,8 +23,8 @@ import { VIEWS } from "./shared.js";
 import { PlaceList } from "./driving/place_list.js";
 import { Keeping } from "./share/keeping.js";
 import { Panel } from "./panel/panel.js";
-import { Speaker } from "./access/speaker.js";
-import { RunUntilMenu } from "./lessons/run_until.js";
+import { Speaker } from "./ui/speaker.js";
+import { RunUntilMenu } from "./timeline/run_until.js";
 import { Source } from "./recordings/source.js";
 import { Viewer } from "./viewer/viewer.js";
 import { Timeline } from "./timeline/timeline.js";

@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import * as lessons from "../../../web/static/model/lessons.js";
-import { CHOICES, ending } from "../../../web/static/model/until.js";
+import { CHOICES, ending } from "../../../web/static/timeline/run_until.js";
 import { voteWords } from "../../../web/static/model/vote.js";
 import { segment } from "./made.js";
 

@@ -1,6 +1,10 @@
 // The office as the engine has it. It is read again after each change; edits, undo and redo go one after the other.
 
-import { plainly, sentence } from "../ui/words.js";
+import { sentence } from "../ui/words.js";
+
+/** The refusal of an edit without the numbers that things have in the world's file. @param {string} reason */
+export const plainly = (reason) =>
+  reason.replace(/^steps\[\d+\]: /, "").replace(/^\w+\[\d+\] \((.+?)\)(?= would cover)/, "the $1");
 
 export class WorldClient {
   /**

@@ -1,6 +1,7 @@
 // A plot against time as a vector picture: axes, lines and what they are. No DOM.
 
-import { clock, tickTimesIn } from "../ui/words.js";
+import { clock } from "../ui/words.js";
+import { tickTimesIn } from "../timeline/line.js";
 
 const [WIDE, HIGH, LEFT, RIGHT, TOP, BOTTOM] = [900, 420, 70, 24, 76, 58]; // pixels
 const MOST = 1500; // points of a line

@@ -2,7 +2,7 @@
 // injected by hand at the chosen column.
 
 import { make, renew } from "../ui/elements.js";
-import { nameOf } from "../model/event_kinds.js";
+import { nameOf } from "../timeline/events.js";
 import { choice, heading, note, SwitchList } from "./parts.js";
 import { Report } from "./report.js";
 

@@ -2,7 +2,7 @@
 
 import { $ } from "../ui/elements.js";
 import { download } from "./download.js";
-import { fine } from "../model/timeline.js";
+import { fine } from "../ui/words.js";
 import { momentWords, sizeWords } from "../model/moments.js";
 import { post } from "../net/post.js";
 import { toast } from "../ui/toasts.js";

@@ -3,7 +3,7 @@
 import { $, find, make } from "../ui/elements.js";
 import { download } from "./download.js";
 import { saveCanvas, shown } from "./pictures.js";
-import { fine } from "../model/timeline.js";
+import { fine } from "../ui/words.js";
 import { nameOfMoment } from "../model/moments.js";
 import { toast } from "../ui/toasts.js";
 

@@ -2,15 +2,12 @@
 // branches. Dragging it shows the past. Marks that are pointed at or touched say more.
 
 import { $, make, svg } from "../ui/elements.js";
-import { clock, tickTimesIn } from "../ui/words.js";
-import { nameOf } from "../model/event_kinds.js";
-import { counted, fine, labelsOf, marksOf, parted, whole, within, words, zoomed } from "../model/timeline.js";
+import { clock, fine } from "../ui/words.js";
+import { labelsOf, marksOf, tickTimesIn, whole, within, zoomed } from "./line.js";
+import { counted, EventList, legend, markAt, nameOf, words } from "./events.js";
+import { Comparison, parted } from "./comparison.js";
 import { Bookmarks } from "./bookmarks.js";
-import { Comparison } from "./comparison.js";
-import { EventList } from "./event_list.js";
-import { legend, markAt } from "./events.js";
-import { Pointers } from "./pointers.js";
-import { Seeker } from "./seeker.js";
+import { Pointers, Seeker } from "./seeker.js";
 import { Tools } from "./tools.js";
 
 const REDRAW_MS = 500;
@@ -34,11 +31,11 @@ export class Timeline {
     this.time = null;
     /** @type {number | null} */
     this.dragged = null; // the time under the pointer, until the page has it
-    /** @type {import("../model/timeline.js").Span | null} */
+    /** @type {import("./line.js").Span | null} */
     this.part = null; // of the run; null: all of it
     /** @type {ReturnType<typeof setTimeout> | undefined} */
     this.due = undefined;
-    /** @type {import("../model/timeline.js").Axis} */
+    /** @type {import("./line.js").Axis} */
     this.x = () => 0; // where a time is
     this.watches = link.watches;
     this.seeker = new Seeker(link);
@@ -199,7 +196,7 @@ export class Timeline {
     this.place.setAttribute("aria-valuetext", says);
   }
 
-  /** The other branches, each a line that leaves its parent's. @param {number} y @param {import("../model/timeline.js").Axis} x */
+  /** The other branches, each a line that leaves its parent's. @param {number} y @param {import("./line.js").Axis} x */
   branchLines(y, x) {
     const { branches = [], branch = 1 } = this.time ?? {};
     return branches
@@ -215,7 +212,7 @@ export class Timeline {
       });
   }
 
-  /** @param {number} y @param {import("../model/timeline.js").Axis} x */
+  /** @param {number} y @param {import("./line.js").Axis} x */
   loopMarks(y, x) {
     const { a } = this.tools;
     const loop = this.time?.loop ?? (a === null ? null : [a, a]);

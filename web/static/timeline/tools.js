@@ -1,8 +1,8 @@
 // The buttons above the timeline: steps, events, marks of a loop, branches, going on from the past and back to now.
 
 import { $, find, icon, labelled, make } from "../ui/elements.js";
-import { clock } from "../ui/words.js";
-import { fine, nextEvent } from "../model/timeline.js";
+import { clock, fine } from "../ui/words.js";
+import { times } from "./events.js";
 
 export class Tools {
   /** @param {import("./timeline.js").Timeline} timeline @param {import("../net/connection.js").Connection} link */
@@ -106,4 +106,15 @@ export class Tools {
     button.addEventListener("click", () => this.timeline.comparison.toggle());
     return button;
   }
+}
+
+/**
+ * The time of the next event after a time (`way` 1) or before it (-1); undefined: there is none.
+ * @param {TimelineEvent[]} events oldest first
+ * @param {number} time_s
+ * @param {1 | -1} way
+ */
+export function nextEvent(events, time_s, way) {
+  const times = events.map((event) => event.time_s).filter((time) => (time - time_s) * way > 0.05);
+  return way > 0 ? times[0] : times.at(-1);
 }

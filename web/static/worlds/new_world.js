@@ -1,9 +1,16 @@
 // The dialog that begins a new, empty world.
 
 import { $ } from "../ui/elements.js";
-import { freeName } from "../ui/words.js";
 import { post, worlds } from "../net/post.js";
 import { toast } from "../ui/toasts.js";
+
+/** The first of my-world, my-world-2, ... that no world has. @param {WorldTitles} taken */
+export function freeName({ yours, ours }) {
+  let k = 1;
+  const name = () => (k > 1 ? `my-world-${k}` : "my-world");
+  while (name() in yours || name() in ours) k += 1;
+  return name();
+}
 
 export class NewWorld {
   /**

@@ -1,9 +1,21 @@
 // The run that was cut off, or the brain that an earlier program kept: a quiet offer over the plates, until somebody has answered it on any page.
 
 import { $ } from "../ui/elements.js";
-import { experiences, keptWords } from "../ui/words.js";
 import { post } from "../net/post.js";
 import { toast } from "../ui/toasts.js";
+import { sentence } from "../ui/words.js";
+
+/** @param {number} count */
+export const experiences = (count) => `${count.toLocaleString("en")} ${count === 1 ? "experience" : "experiences"}`;
+
+/** The words that offer a kept brain. @param {KeptOffer} kept @param {number} now_s since 1970 */
+export function keptWords(kept, now_s) {
+  const LONG_AGO_S = 12 * 3600;
+  /** @type {Intl.DateTimeFormatOptions} */
+  const day = now_s - kept.kept_at < LONG_AGO_S ? {} : { day: "numeric", month: "short", year: "numeric" };
+  const when = new Date(kept.kept_at * 1000).toLocaleString("en-GB", { ...day, hour: "2-digit", minute: "2-digit" });
+  return `${kept.title}, ${Math.round(kept.time_s / 60)} simulated minutes, ${experiences(kept.experiences)}, kept ${when}`;
+}
 
 const LOOK_MS = 400;
 
@@ -97,5 +109,31 @@ export class KeptBrain {
       () => null,
     );
     if (share) $("kept-done").value = share;
+  }
+}
+
+/** The run begins anew with the brain of the file that is chosen. It is sent as it is; the server says in a sentence what is wrong with it. */
+export function takeBrainFiles() {
+  const input = $("brain-file");
+  $("brain-load").addEventListener("click", () => {
+    $("restart").open = false;
+    input.click();
+  });
+  input.addEventListener("change", () => {
+    if (input.files?.length) send(input.files[0]);
+    input.value = ""; // so that the same file can be chosen again
+  });
+}
+
+/** @param {File} file */
+async function send(file) {
+  const headers = { "Content-Type": "application/octet-stream" };
+  try {
+    const answer = await fetch("/api/brain", { method: "POST", headers, body: file });
+    const told = await answer.json();
+    if (answer.ok) toast(`Started anew with the brain of ${file.name}.`);
+    else for (const wrong of told.detail) toast(sentence(wrong.reason), { bad: true });
+  } catch {
+    toast(`${file.name} could not be sent.`, { bad: true });
   }
 }

@@ -1,25 +1,12 @@
-// Which events have room on the timeline, which part of it is shown, and which event is next. No DOM.
+// Which part of a run the timeline shows, and which marks, names and times have room on it.
 
-import { clock } from "../ui/words.js";
-import { nameOf, weightOf } from "./event_kinds.js";
+import { nameOf, weightOf } from "./events.js";
 
 const [LETTER_PX, AROUND_PX] = [7.2, 5]; // width of a letter, and room on either side of a name
 const NAMED = 60; // of the events that count, this many of the newest get names
 const APART_PX = 5; // a second mark of the same kind within this distance would say nothing
 
 /** @typedef {(time_s: number) => number} Axis where a time is, pixels */
-
-/** @param {TimelineEvent} event */
-export const words = (event) => `${clock(event.time_s)} ${nameOf(event.kind)}: ${event.text}${times(event)}`;
-
-/** How often what repeats has happened, "" for once. @param {Pick<TimelineEvent, "count" | "since_s">} event */
-export const times = ({ count, since_s }) => (count > 1 ? `, ${count} times since ${clock(since_s)}` : "");
-
-/** Of what repeats only the newest, which counts the others. @param {TimelineEvent[]} events oldest first */
-export function counted(events) {
-  const newest = new Map(events.map((event) => [event.line, event]));
-  return events.filter((event) => !event.line || newest.get(event.line) === event);
-}
 
 /**
  * The marks to draw. Those that count most come last, and so on top.
@@ -86,42 +73,25 @@ export function within(span, all) {
   return { from, to: from + length };
 }
 
-/**
- * The time of the next event after a time (`way` 1) or before it (-1); undefined: there is none.
- * @param {TimelineEvent[]} events oldest first
- * @param {number} time_s
- * @param {1 | -1} way
- */
-export function nextEvent(events, time_s, way) {
-  const times = events.map((event) => event.time_s).filter((time) => (time - time_s) * way > 0.05);
-  return way > 0 ? times[0] : times.at(-1);
+const STEPS_S = [10, 30, 60, 120, 180, 300, 600, 900, 1800, 3600, 7200, 14400];
+
+const PER_TICK_PX = 110;
+
+/** The times written below the part of a timeline from `from` to `to` that is `width` pixels wide. @param {number} from @param {number} to @param {number} width */
+export function tickTimesIn(from, to, width) {
+  if (from <= 0) return tickTimes(to, width);
+  const most = Math.max(3, Math.floor(width / PER_TICK_PX));
+  const step = [1, 2, 5, ...STEPS_S].find((value) => (to - from) / value <= most) ?? tickTimes(to - from, width)[1];
+  const times = [];
+  for (let time = Math.ceil(from / step) * step; time <= to; time += step) times.push(time);
+  return times;
 }
 
-/** A time for people, to the tenth. @param {number} seconds */
-export const fine = (seconds) => `${clock(seconds)}.${Math.floor(seconds * 10 + 1e-6) % 10}`;
-
-/**
- * When two branches parted: the first time that they do not share.
- * @param {BranchFields[]} branches
- * @param {number} a
- * @param {number} b
- */
-export function parted(branches, a, b) {
-  const lines = [a, b].map((number) => lineOf(branches, number));
-  let same = 0;
-  while (lines[0][same] && lines[0][same] === lines[1][same]) same++;
-  return Math.min(...lines.map((line) => line[same]?.from_s ?? Infinity));
-}
-
-/** A branch and its forebears, the first of them first. @param {BranchFields[]} branches @param {number} number */
-function lineOf(branches, number) {
-  /** @type {BranchFields[]} */
-  const line = [];
-  for (
-    let at = branches.find((one) => one.number === number);
-    at;
-    at = branches.find((one) => one.number === at?.parent)
-  )
-    line.unshift(at);
-  return line;
+/** The times written below a timeline of `end` seconds that is `width` pixels wide. @param {number} end @param {number} width */
+export function tickTimes(end, width) {
+  const most = Math.max(3, Math.floor(width / PER_TICK_PX));
+  const step = STEPS_S.find((value) => end / value <= most) ?? Math.ceil(end / most / 3600) * 3600;
+  const times = [];
+  for (let time = 0; time <= end - step * 0.2; time += step) times.push(time);
+  return times;
 }

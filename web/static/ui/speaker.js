@@ -1,7 +1,9 @@
-// What is read aloud to who cannot see the stage: events that matter, not too many at once. No DOM.
+// What is read aloud to who cannot see the stage: events that matter, not too many at once. It comes into the page's live region,
+// in breaths of some seconds.
 
-import { nameOf, weightOf } from "./event_kinds.js";
-import { ended } from "../ui/words.js";
+import { nameOf, weightOf } from "../timeline/events.js";
+import { ended } from "./words.js";
+import { $ } from "./elements.js";
 
 const TOLD = new Set(
   /** @type {EventKind[]} */ ([
@@ -59,5 +61,28 @@ export class Speech {
       ended(text.startsWith(nameOf(kind)) ? text : `${nameOf(kind)}: ${text}`),
     );
     return words.join(" ") + (left > 0 ? ` And ${left} more ${left === 1 ? "event" : "events"}.` : "");
+  }
+}
+
+const BREATH_MS = 3000;
+
+export class Speaker {
+  constructor() {
+    this.speech = new Speech();
+    this.silent = true; // until something waits
+  }
+
+  /** Events that have just happened. @param {TimelineEvent[]} events */
+  hear(events) {
+    this.speech.hear(events, performance.now() / 1000);
+    if (this.silent) this.speak();
+  }
+
+  speak() {
+    const words = this.speech.next();
+    this.silent = words === "";
+    if (this.silent) return;
+    $("said").textContent = words;
+    setTimeout(() => this.speak(), BREATH_MS);
   }
 }
