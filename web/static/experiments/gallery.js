@@ -1,11 +1,79 @@
 // The experiments of the papers in a dialog: all of them as cards, or one with its trials.
 
-import { $ } from "../ui/elements.js";
+import { $, icon, make, svg } from "../ui/elements.js";
+import { engineWords, firstEngine, Grid } from "./grid.js";
 import { toast } from "../ui/toasts.js";
 import { sentence } from "../ui/words.js";
 import { get, reasons } from "../net/post.js";
-import { cardOf } from "./card.js";
-import { Grid } from "./grid.js";
+
+/** The plan of an experiment's world: stands for its figure until there is one. @param {PlanDrawing} plan */
+function planOf({ width, depth, left, bottom, walls, way, places }) {
+  const dots = places.map(([x, y]) => svg("circle", { cx: x, cy: y, r: Math.max(width, depth) / 45, class: "goal" }));
+  const upright = svg(
+    "g",
+    { transform: `translate(${-left} ${bottom + depth}) scale(1 -1)` },
+    svg("path", { d: walls, class: "walls" }),
+    svg("path", { d: way, class: "way" }),
+    ...dots,
+  );
+  return svg("svg", { viewBox: `0 0 ${width} ${depth}`, class: "plan", "aria-hidden": "true" }, upright);
+}
+
+/** How long a trial is, about. @param {number} seconds */
+export function lengthWords(seconds) {
+  if (seconds < 90) return `${Math.max(5, 5 * Math.round(seconds / 5))} s`;
+  if (seconds < 5400) return `${Math.round(seconds / 60)} min`;
+  return `${(seconds / 3600).toFixed(1)} h`;
+}
+
+/** @param {Card} card */
+export function facts({ axes, seconds, done }) {
+  const settings = axes.reduce((product, { levels }) => product * levels.length, 1);
+  const words = [`${lengthWords(seconds)} a trial`];
+  if (settings > 1) words.push(`${settings} settings`);
+  if (done) words.push(`${done.toLocaleString("en")} ${done === 1 ? "trial" : "trials"} run here`);
+  return words.join(" · ");
+}
+
+/**
+ * One experiment: its figure, what it asks, and the buttons.
+ * @param {Card} card
+ * @param {{ watch: (engine: EngineName) => void, trials: (engine: EngineName) => void }} actions
+ */
+function cardOf(card, { watch, trials }) {
+  const engine = make("select", { title: "By whose rules", ariaLabel: `Engine for ${card.title}` });
+  engine.append(...card.engines.map((name) => new Option(engineWords(name), name)));
+  engine.value = firstEngine(card);
+  const chosen = () => /** @type {EngineName} */ (engine.value);
+  const go = make("button", { type: "button", className: "go", ariaLabel: `Watch it: ${card.title}` });
+  go.append(icon("play"), "Watch it");
+  go.addEventListener("click", () => watch(chosen()));
+  const more = make("button", { type: "button", className: "trials", textContent: "Trials" });
+  more.ariaLabel = `Trials of ${card.title}`;
+  more.addEventListener("click", () => trials(chosen()));
+  const row = make("div", { className: "row" }, ...(card.engines.length > 1 ? [engine] : []), go, more);
+  const made = make(
+    "li",
+    { className: "card" },
+    figureOf(card),
+    make("h3", { textContent: card.title }),
+    make("p", { className: "second", textContent: `${card.paper} · ${card.world}` }),
+    make("p", { className: "asks", textContent: card.asks }),
+    make("p", { className: "second facts", textContent: facts(card) }),
+    row,
+  );
+  made.dataset.name = card.name;
+  return made;
+}
+
+/** @param {Card} card */
+function figureOf({ picture, plan, title }) {
+  const figure = make("div", { className: "figure" });
+  if (picture) figure.append(make("img", { src: picture, alt: `Figure: ${title}`, loading: "lazy" }));
+  else if (plan) figure.append(planOf(plan));
+  figure.classList.toggle("drawn", !picture);
+  return figure;
+}
 
 export class Gallery {
   /**

@@ -1,9 +1,30 @@
 // The note on the stage about the trial that is being watched: what is being done, how far it is, and what came of it.
 
-import { $, find } from "../ui/elements.js";
+import { $, find, say } from "../ui/elements.js";
 import { toast } from "../ui/toasts.js";
-import { trialWords } from "../model/experiments.js";
-import { sentence } from "../ui/words.js";
+import { clock, sentence } from "../ui/words.js";
+import { engineWords } from "./grid.js";
+
+/**
+ * What the note on the stage says of a trial that is being watched.
+ * @param {Trial} trial
+ * @param {number} time_s
+ */
+export function trialWords(trial, time_s) {
+  const settings = [engineWords(trial.engine), ...trial.levels, `seed ${trial.seed}`].join(" · ");
+  const which = `Experiment ${trial.experiment}`;
+  if (trial.state !== "running") {
+    const doing = trial.state === "over" ? `over: ${trial.outcome}` : `ended: ${trial.outcome}`;
+    return { which, settings, doing, clock: "", share: trial.state === "over" ? 1 : null };
+  }
+  if (trial.ahead !== null) {
+    const doing = "going to the moment that decided it";
+    return { which, settings, doing, clock: `${Math.floor(100 * trial.ahead)} %`, share: trial.ahead };
+  }
+  const time = `${clock(time_s)} of about ${clock(trial.about_s)}`;
+  const doing = trial.altered ? `${trial.doing}, changed by hand` : trial.doing;
+  return { which, settings, doing, clock: time, share: Math.min(1, time_s / Math.max(1, trial.about_s)) };
+}
 
 export class Watched {
   /** @param {{ here: () => void, again: (wish: WatchExperiment) => void, more: () => void }} actions */
@@ -43,11 +64,6 @@ export class Watched {
     $("trial-here").hidden = trial.ahead === null;
     $("trial-again").hidden = $("trial-more").hidden = trial.state === "running";
   }
-}
-
-/** @param {Element} place @param {string} words */
-function say(place, words) {
-  if (place.textContent !== words) place.textContent = words;
 }
 
 /** @param {Trial} trial @returns {WatchExperiment} */

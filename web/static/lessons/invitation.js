@@ -1,7 +1,7 @@
 // Where the class votes: large and with a QR code for whoever looks at a screen from afar, else a line below the question.
 
 import { $, find, make } from "../ui/elements.js";
-import { isOpen } from "../model/lessons.js";
+import { isOpen } from "./words.js";
 
 export class Invitation {
   constructor() {

@@ -2,23 +2,11 @@
 // the lesson is in; all pages show the same.
 
 import { $, icon, make, renew, say } from "../ui/elements.js";
-import {
-  doingWords,
-  isBroken,
-  isWatched,
-  linked,
-  moments,
-  nextAfter,
-  placeWords,
-  showWords,
-  tabOf,
-  verdict,
-  which,
-} from "../model/lessons.js";
+import { doingWords, isBroken, isWatched, moments, placeWords, showWords, tabOf, verdict, which } from "./words.js";
+import { linked, nextAfter, setDone } from "./list.js";
 import { phone } from "../viewer/viewer.js";
 import { TABS, VIEWS } from "../shared.js";
-import { formulaBox } from "./formulas.js";
-import { setDone } from "./kept.js";
+import { fitFormulas, formulaBox } from "./formulas.js";
 import { Invitation } from "./invitation.js";
 import { Question } from "./question.js";
 
@@ -256,14 +244,5 @@ export class Lesson {
     this.box.dataset.folded = String(on);
     $("lesson-fold").setAttribute("aria-expanded", String(!on));
     $("lesson-fold").setAttribute("aria-label", on ? "Unfold the card" : "Fold the card");
-  }
-}
-
-// A formula that is wider than the card is set smaller; what is wider still can be scrolled.
-function fitFormulas() {
-  for (const math of /** @type {NodeListOf<HTMLElement>} */ ($("lesson-formulas").querySelectorAll(".math"))) {
-    math.style.fontSize = "";
-    const share = math.clientWidth / math.scrollWidth;
-    if (share < 1) math.style.fontSize = `${Math.max(0.74, 1.06 * share).toFixed(2)}em`;
   }
 }

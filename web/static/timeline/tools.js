@@ -2,7 +2,6 @@
 
 import { $, find, icon, labelled, make } from "../ui/elements.js";
 import { clock, fine } from "../ui/words.js";
-import { times } from "./events.js";
 
 export class Tools {
   /** @param {import("./timeline.js").Timeline} timeline @param {import("../net/connection.js").Connection} link */

@@ -1,44 +1,6 @@
-// The words, groups and states of lessons. No DOM.
+// The states of a lesson, and what the card and the page for votes say in each.
 
 import { clock, sentence } from "../ui/words.js";
-
-/** Each begins with the lesson named here; those behind it belong to it, too. */
-const GROUPS = new Map([
-  ["packet", "The packet: path integration"],
-  ["loop", "The map: loops, snaps, places"],
-  ["kidnapped", "Lost and found"],
-  ["goal", "Going somewhere"],
-  ["small", "Limits, and what we added"],
-]);
-
-/**
- * Lessons in their order, by chapter. Those of the user's own come last.
- * @param {LessonCard[]} cards
- */
-export function chapters(cards) {
-  /** @type {{ title: string, cards: LessonCard[] }[]} */
-  const all = [];
-  for (const card of cards.filter(({ own }) => !own)) {
-    const title = GROUPS.get(card.name);
-    if (title || !all.length) all.push({ title: title ?? "Lessons", cards: [] });
-    all[all.length - 1].cards.push(card);
-  }
-  const own = cards.filter((card) => card.own);
-  return own.length ? [...all, { title: "Your own", cards: own }] : all;
-}
-
-/** The lesson after this one, in their order; null after the last. @param {LessonCard[]} cards @param {string} name */
-export function nextAfter(cards, name) {
-  const good = cards.filter(({ wrong }) => wrong === null);
-  const at = good.findIndex((card) => card.name === name);
-  return at < 0 ? null : (good[at + 1] ?? null);
-}
-
-/** @param {LessonCard} card */
-export function cardFacts({ paper, minutes, rounds }) {
-  const long = minutes < 1.5 ? `${Math.max(5, 5 * Math.round(minutes * 12))} s` : `${Math.round(minutes)} min`;
-  return `${paper} · ${long}${rounds > 1 ? ` · ${rounds} rounds` : ""}`;
-}
 
 /** What stands over the lesson's title. @param {LessonView} lesson @param {LessonCard | null} card */
 export function which(lesson, card) {
@@ -136,27 +98,11 @@ export const tabOf = (at, tabs) => tabs.find((tab) => tab.toLowerCase() === at) 
 export const placeWords = (at) =>
   ({ office: "Office", pose: "Pose cells", map: "Map", timeline: "Timeline" })[at] ?? at[0].toUpperCase() + at.slice(1);
 
-/** The name of a lesson in an address, `#lesson=NAME`; null without one. @param {string} hash */
-export const linked = (hash) => /^#lesson=([a-z0-9-]{1,40})$/.exec(hash)?.[1] ?? null;
-
-/** A point turned about the origin, counter-clockwise. @param {Point} point @param {number} rad @returns {Point} */
-export function turned([x, y], rad) {
-  const [cos, sin] = [Math.cos(rad), Math.sin(rad)];
-  return [x * cos - y * sin, x * sin + y * cos];
-}
-
-/**
- * Room around points, to be drawn with y upwards: the rectangle and the path of lines between them.
- * @param {[Point, Point][]} lines
- */
-export function outline(lines) {
-  const xs = lines.flatMap(([a, b]) => [a[0], b[0]]);
-  const ys = lines.flatMap(([a, b]) => [a[1], b[1]]);
-  const [left, right] = lines.length ? [Math.min(...xs), Math.max(...xs)] : [0, 1];
-  const [bottom, top] = lines.length ? [Math.min(...ys), Math.max(...ys)] : [0, 1];
-  const rim = 0.04 * Math.max(right - left, top - bottom, 1);
-  const d = lines
-    .map(([a, b]) => `M${a[0].toFixed(2)} ${a[1].toFixed(2)}L${b[0].toFixed(2)} ${b[1].toFixed(2)}`)
-    .join("");
-  return { left: left - rim, bottom: bottom - rim, width: right - left + 2 * rim, height: top - bottom + 2 * rim, d };
+/** @param {LessonView | null} lesson @param {boolean} voted @param {LessonText["predict"]} asked */
+export function voteWords(lesson, voted, { options }) {
+  if (!lesson) return "Waiting for the question.";
+  if (isOpen(lesson)) return voted ? "Your vote counts. You may still change it." : "What do you think will happen?";
+  if (!lesson.outcome) return "It is being shown: look at the screen.";
+  const { choice, words } = lesson.outcome;
+  return choice === null || !options[choice] ? words : `It came true: ${options[choice]}. ${words}`;
 }
