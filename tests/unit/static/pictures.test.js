@@ -2,9 +2,10 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { linkIn, momentWords, nameOfMoment, situationWords } from "../../../web/static/model/moments.js";
+import { linkIn, momentWords, situationWords } from "../../../web/static/share/share.js";
+import { nameOfMoment } from "../../../web/static/share/stage_film.js";
 import * as draw from "../../../web/static/panel/canvases.js";
-import { plotSvg, ticksIn } from "../../../web/static/model/plot_svg.js";
+import { plotSvg, ticksIn } from "../../../web/static/share/pictures.js";
 import { chance } from "./made.js";
 import { fromAbove, STRIP, viewsASquare, viewStrip } from "../../../web/static/panel/senses.js";
 

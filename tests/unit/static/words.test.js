@@ -6,7 +6,7 @@ import { FirstMinute } from "../../../web/static/header/first_minute.js";
 import { choices, whereabouts } from "../../../web/static/driving/place_list.js";
 import * as said from "../../../web/static/ui/words.js";
 import { plainly } from "../../../web/static/editor/world_client.js";
-import { freeName } from "../../../web/static/worlds/new_world.js";
+import { freeName } from "../../../web/static/worlds/own_worlds.js";
 import { experiences, keptWords } from "../../../web/static/brains/kept_brain.js";
 import { Speech } from "../../../web/static/ui/speaker.js";
 

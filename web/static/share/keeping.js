@@ -1,8 +1,7 @@
 // The menu beside the views: what can be kept of the moment that is shown, and shared. It also opens what others have shared.
 
 import { $, find } from "../ui/elements.js";
-import { Opening } from "./opening.js";
-import { Share } from "./share.js";
+import { Opening, Share } from "./share.js";
 import { naming, StageFilm } from "./stage_film.js";
 import { reasons } from "../net/post.js";
 import { savePng, saveSvg } from "./pictures.js";

@@ -1,11 +1,17 @@
 // The plates as they are on the stage: a picture of them, and a film of a stretch of time, made in this browser from viser's canvas.
 
 import { $, find, make } from "../ui/elements.js";
-import { download } from "./download.js";
-import { saveCanvas, shown } from "./pictures.js";
+import { download, saveCanvas, shown } from "./pictures.js";
 import { fine } from "../ui/words.js";
-import { nameOfMoment } from "../model/moments.js";
 import { toast } from "../ui/toasts.js";
+
+/** The run and the moment, for the name of a file. @param {string | null} world @param {number} seed @param {number} time_s */
+export function nameOfMoment(world, seed, time_s) {
+  const minutes = Math.floor(time_s / 60 + 1e-9);
+  const seconds = Math.max(0, time_s - 60 * minutes).toFixed(1);
+  const where = (world ?? "recording").replace(/[^A-Za-z0-9]+/g, "-");
+  return `${where}-seed${seed}-${minutes}m${seconds.padStart(4, "0")}s`;
+}
 
 const TYPES = ["video/webm;codecs=vp9", "video/webm;codecs=vp8", "video/webm", "video/mp4"]; // as a browser knows them
 const FPS = 30;

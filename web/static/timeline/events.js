@@ -62,7 +62,7 @@ export const markOf = (kind) => known(kind) ?? UNKNOWN;
 export const words = (event) => `${clock(event.time_s)} ${nameOf(event.kind)}: ${event.text}${times(event)}`;
 
 /** How often what repeats has happened, "" for once. @param {Pick<TimelineEvent, "count" | "since_s">} event */
-export const times = ({ count, since_s }) => (count > 1 ? `, ${count} times since ${clock(since_s)}` : "");
+const times = ({ count, since_s }) => (count > 1 ? `, ${count} times since ${clock(since_s)}` : "");
 
 /** Of what repeats only the newest, which counts the others. @param {TimelineEvent[]} events oldest first */
 export function counted(events) {

@@ -1,7 +1,7 @@
 // Files dropped on the page or chosen: worlds and floor plans. The server says what is wrong with one.
 
 import { $ } from "../ui/elements.js";
-import { chosen, dropped, isRecording, play, playFolder } from "../recordings/upload.js";
+import { chosen, dropped, isRecording, play, playFolder } from "./recordings.js";
 import { ended, megabytes } from "../ui/words.js";
 import { toast } from "../ui/toasts.js";
 
@@ -123,7 +123,7 @@ export class Files {
         : "One pixel of most robot maps is 0.05 m.";
   }
 
-  /** A folder is a recording. @param {() => Promise<import("../recordings/upload.js").Folder>} read @param {number} count of what was dropped */
+  /** A folder is a recording. @param {() => Promise<import("./recordings.js").Folder>} read @param {number} count of what was dropped */
   async offerFolder(read, count = 1) {
     this.files = [];
     this.open();

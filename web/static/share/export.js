@@ -3,6 +3,7 @@
 import { $, make } from "../ui/elements.js";
 import { toast } from "../ui/toasts.js";
 import { reasons } from "../net/post.js";
+import { download } from "./pictures.js";
 
 /** @typedef {{ format: string, words: string, refusal: string | null }} Offer */
 
@@ -88,9 +89,7 @@ export class Exports {
   /** @param {Blob} blob @param {string} disposition @param {string} format */
   download(blob, disposition, format) {
     const name = /filename="([^"]+)"/.exec(disposition)?.[1] ?? `run.${format}`;
-    const url = URL.createObjectURL(blob);
-    make("a", { href: url, download: name }).click();
-    setTimeout(() => URL.revokeObjectURL(url), 60_000);
+    download(blob, name);
     $("export-dialog").close();
     toast(`Saved ${name}.`);
   }

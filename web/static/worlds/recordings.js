@@ -1,6 +1,39 @@
-// A recording that was dropped on the page or chosen: it is sent as it is, and the server says what is wrong with it.
+// Recordings: one that was dropped on the page or chosen is sent as it is, and the server says what is wrong with it. While one
+// plays, what it lacks is not on the page.
 
+import { $, find } from "../ui/elements.js";
 import { ended, megabytes } from "../ui/words.js";
+
+const OFFICE_TABS = ["Office"];
+
+export class Source {
+  /** @param {import("../panel/panel.js").Panel} panel */
+  constructor(panel) {
+    this.panel = panel;
+    this.shown = "";
+    /** @type {RecordingFields | null} */
+    this.recording = null;
+  }
+
+  /** @param {RecordingFields | null} recording */
+  show(recording) {
+    this.recording = recording;
+    const truth = recording === null || recording.has.includes("truth");
+    const now = `${recording?.name} ${truth}`;
+    if (now === this.shown) return;
+    this.shown = now;
+    document.body.dataset.source = recording ? "recording" : "office";
+    document.body.dataset.truth = String(truth);
+    find(document, 'button[data-view="office"]').textContent = recording ? "True path" : "Office";
+    this.panel.hide([...(recording ? OFFICE_TABS : []), ...(truth ? [] : ["Truth"])]);
+    $("restart-words").textContent = recording ? "Play from the beginning with seed" : "Restart with seed";
+  }
+
+  /** Why an order to the robot or the office is not carried out, or null. */
+  get lacks() {
+    return this.recording && "A recording plays: it has no office, and its robot goes where it went.";
+  }
+}
 
 const RECORDING =
   /\.(mcap|bag|db3|log|clf|carmen|mp4|avi|mkv|mov|webm|m4v|mpe?g|tar|tgz|tbz2?|txz|zip|7z|rar)(\.(gz|bz2|xz|zst))?$/i;
