@@ -2,33 +2,29 @@
 
 import { $, find } from "./ui/elements.js";
 import { BesideStrip } from "./brains/beside.js";
-import { FirstMinuteCard } from "./header/first_minute.js";
-import { HandDrive } from "./driving/drive.js";
+import { FirstMinuteCard, Help } from "./header/help.js";
+import { HandDrive } from "./ui/drive.js";
 import { Aids, Presenter } from "./viewer/aids.js";
 import { Editor } from "./editor/editor.js";
 import { Exports } from "./share/export.js";
 import { Files } from "./worlds/files.js";
-import { Gallery } from "./experiments/gallery.js";
+import { Gallery, Watched } from "./experiments/gallery.js";
 import { KeptBrain, takeBrainFiles } from "./brains/kept_brain.js";
-import { Help } from "./header/help.js";
 import { closeOpenMenu, Header, Theming } from "./header/header.js";
-import { actOf, Keys } from "./driving/keys.js";
+import { actOf, Keys } from "./ui/keys.js";
 import { Lesson } from "./lessons/lesson.js";
 import { LessonList } from "./lessons/list.js";
 import { Connection } from "./net/connection.js";
-import { sentence } from "./ui/words.js";
+import { dismissToast, sentence, toast } from "./ui/words.js";
 import { NewWorld, OwnWorlds } from "./worlds/own_worlds.js";
 import { VIEWS } from "./shared.js";
-import { PlaceList } from "./driving/place_list.js";
+import { PlaceList, Speaker } from "./ui/access.js";
 import { Keeping } from "./share/keeping.js";
 import { Panel } from "./panel/panel.js";
-import { Speaker } from "./ui/speaker.js";
 import { RunUntilMenu } from "./timeline/run_until.js";
 import { Source } from "./worlds/recordings.js";
 import { Viewer } from "./viewer/viewer.js";
 import { Timeline } from "./timeline/timeline.js";
-import { dismissToast, toast } from "./ui/toasts.js";
-import { Watched } from "./experiments/watched.js";
 import { KEYS, newId, onlyLook, takeNoFiles } from "./net/watch.js";
 
 const watching = document.body.dataset.watch === "true";
@@ -222,7 +218,7 @@ async function mayLeave() {
     dialog.addEventListener("close", () => resolve(dialog.returnValue === "leave"), { once: true }),
   );
 }
-/** What the keys of keys.js do; false: it had no meaning now. @type {Record<import("./driving/keys.js").Act, () => unknown>} */
+/** What the keys of keys.js do; false: it had no meaning now. @type {Record<import("./ui/keys.js").Act, () => unknown>} */
 const ACTS = {
   explore,
   kidnap,

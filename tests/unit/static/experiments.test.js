@@ -3,8 +3,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import * as gallery from "../../../web/static/experiments/grid.js";
-import { trialWords } from "../../../web/static/experiments/watched.js";
-import { facts, lengthWords } from "../../../web/static/experiments/gallery.js";
+import { facts, lengthWords, trialWords } from "../../../web/static/experiments/gallery.js";
 
 /** @type {Dot} */
 const dot = { id: "a", seed: 7, quick: false, good: 2, of: 3, words: "2 of 3", moment_s: 65, moment: "printer: late" };

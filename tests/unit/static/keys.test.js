@@ -2,15 +2,15 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { actOf, GROUPS, meaningOf, written } from "../../../web/static/driving/keys.js";
+import { actOf, GROUPS, meaningOf, written } from "../../../web/static/ui/keys.js";
 import { isLook, KEYS, looksOn, newId } from "../../../web/static/net/watch.js";
 
 const NOWHERE = { typing: false, arrows: false, pressing: false, dialog: false };
 const FREE = { ctrlKey: false, metaKey: false, altKey: false, isComposing: false };
-/** @param {string} code @param {string} key @param {Partial<import("../../../web/static/driving/keys.js").Pressed>} [rest] */
+/** @param {string} code @param {string} key @param {Partial<import("../../../web/static/ui/keys.js").Pressed>} [rest] */
 const pressed = (code, key, rest = {}) => ({ code, key, ...FREE, ...rest });
 const ROWS = GROUPS.flatMap(
-  ({ rows }) => /** @type {readonly import("../../../web/static/driving/keys.js").Row[]} */ (rows),
+  ({ rows }) => /** @type {readonly import("../../../web/static/ui/keys.js").Row[]} */ (rows),
 );
 const HELP = ROWS.flatMap(({ keys }) => keys);
 

@@ -3,14 +3,14 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { linkIn, momentWords, situationWords } from "../../../web/static/share/share.js";
-import { nameOfMoment } from "../../../web/static/share/stage_film.js";
-import * as draw from "../../../web/static/panel/canvases.js";
+import { nameOfMoment } from "../../../web/static/share/keeping.js";
+import * as draw from "../../../web/static/panel/parts.js";
 import { plotSvg, ticksIn } from "../../../web/static/share/pictures.js";
 import { chance } from "./made.js";
 import { fromAbove, STRIP, viewsASquare, viewStrip } from "../../../web/static/panel/senses.js";
 
-/** @typedef {import("../../../web/static/panel/canvases.js").Pixels} Pixels */
-/** @typedef {import("../../../web/static/panel/canvases.js").Rgb} Rgb */
+/** @typedef {import("../../../web/static/panel/parts.js").Pixels} Pixels */
+/** @typedef {import("../../../web/static/panel/parts.js").Rgb} Rgb */
 
 /** @param {Pixels} pixels @param {number} x @param {number} y */
 const at = ({ width, rgba }, x, y) => [...rgba.slice(4 * (y * width + x), 4 * (y * width + x) + 4)];

@@ -2,13 +2,12 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { FirstMinute } from "../../../web/static/header/first_minute.js";
-import { choices, whereabouts } from "../../../web/static/driving/place_list.js";
+import { FirstMinute } from "../../../web/static/header/help.js";
+import { choices, Speech, whereabouts } from "../../../web/static/ui/access.js";
 import * as said from "../../../web/static/ui/words.js";
 import { plainly } from "../../../web/static/editor/world_client.js";
 import { freeName } from "../../../web/static/worlds/own_worlds.js";
 import { experiences, keptWords } from "../../../web/static/brains/kept_brain.js";
-import { Speech } from "../../../web/static/ui/speaker.js";
 
 test("a sentence begins with a capital letter and has one full stop; counts and sizes are in words", () => {
   assert.deepEqual(["x is wrong", "Why?", "so."].map(said.sentence), ["X is wrong.", "Why?", "So."]);

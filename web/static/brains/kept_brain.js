@@ -2,8 +2,7 @@
 
 import { $ } from "../ui/elements.js";
 import { post } from "../net/post.js";
-import { toast } from "../ui/toasts.js";
-import { sentence } from "../ui/words.js";
+import { sentence, toast } from "../ui/words.js";
 
 /** @param {number} count */
 export const experiences = (count) => `${count.toLocaleString("en")} ${count === 1 ? "experience" : "experiences"}`;

@@ -1,23 +1,25 @@
 // What happens when: the lines of the world's script, sorted by time, to add, change and delete, and the daylight below them.
 
+import { $, field, find, labelled, make, removeButton, within } from "../ui/elements.js";
 import {
-  $,
-  field,
-  find,
+  ACTIONS,
+  firstAction,
+  isLevel,
   keepingPlace,
-  labelled,
   levelInput,
-  make,
+  line,
   mark,
-  removeButton,
+  namesOf,
+  NO_LEVEL,
+  NO_TIME,
+  seconds,
+  time,
   timeInput,
-  within,
-} from "../ui/elements.js";
-import { DaylightForm, NO_LEVEL } from "./daylight.js";
-import { ACTIONS, firstAction, isLevel, line, namesOf, NO_TIME, seconds, time } from "../model/script.js";
+} from "./times.js";
+import { DaylightForm } from "./daylight.js";
 import { SCRIPT_ACTIONS } from "../shared.js";
 
-/** @typedef {import("../model/script.js").Action} Action */
+/** @typedef {import("./times.js").Action} Action */
 /** What the form for another line holds. @typedef {{ at_s: number, do: Action, text?: string, name?: string, level?: number }} Draft */
 
 export class TimePanel {

@@ -1,8 +1,7 @@
 // The header: what the session is doing, the controls for time, world and goal, its menus, and light or dark.
 
 import { $, find, keep, kept, setIcon } from "../ui/elements.js";
-import { clock, sentence } from "../ui/words.js";
-import { toast } from "../ui/toasts.js";
+import { clock, sentence, toast } from "../ui/words.js";
 import { THEMES } from "../shared.js";
 
 /** Those that drop down. @returns {HTMLDetailsElement[]} */

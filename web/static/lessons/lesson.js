@@ -1,13 +1,23 @@
-// The lesson's card beside the stage: what this is, the question, what happens, and what came of it. The server says which state
-// the lesson is in; all pages show the same.
+// The lesson's card beside the stage: what this is, the question, where the class votes, what happens, and what came of it. The server
+// says which state the lesson is in; all pages show the same.
 
-import { $, icon, make, renew, say } from "../ui/elements.js";
-import { doingWords, isBroken, isWatched, moments, placeWords, showWords, tabOf, verdict, which } from "./words.js";
+import { $, find, icon, make, renew, say } from "../ui/elements.js";
+import {
+  doingWords,
+  isBroken,
+  isOpen,
+  isWatched,
+  moments,
+  placeWords,
+  showWords,
+  tabOf,
+  verdict,
+  which,
+} from "./words.js";
 import { linked, nextAfter, setDone } from "./list.js";
 import { phone } from "../viewer/viewer.js";
 import { TABS, VIEWS } from "../shared.js";
 import { fitFormulas, formulaBox } from "./formulas.js";
-import { Invitation } from "./invitation.js";
 import { Question } from "./question.js";
 
 export class Lesson {
@@ -246,3 +256,44 @@ export class Lesson {
     $("lesson-fold").setAttribute("aria-label", on ? "Unfold the card" : "Fold the card");
   }
 }
+
+class Invitation {
+  constructor() {
+    this.box = $("lesson-class");
+    this.hint = make("p", { className: "second vote-link" });
+    this.there = this.open = false; // a class can reach this program; and its votes count now
+  }
+
+  /** Asks where the class votes. */
+  async look() {
+    /** @type {{ vote: string | null }} */
+    const { vote } = await fetch("/api/class").then(
+      (answer) => answer.json(),
+      () => ({ vote: null }),
+    );
+    this.there = vote !== null;
+    const here = make("a", { href: vote ?? "/?vote", target: "_blank", textContent: vote ?? "Let the class vote" });
+    if (vote) this.hint.replaceChildren("The class votes at ", here, ".");
+    else this.hint.replaceChildren(here, " on this machine; started with ", command(), ", on their phones.");
+    if (!vote) return;
+    const image = /** @type {HTMLImageElement} */ (find(this.box, "img"));
+    if (!image.src) image.src = "/api/class.svg";
+    const link = /** @type {HTMLAnchorElement} */ (find(this.box, "a"));
+    link.href = vote;
+    const [, name, port] = /^http:\/\/(.*?)(:\d+)?\/$/.exec(vote) ?? ["", vote, ""];
+    link.replaceChildren(name, make("wbr"), port ?? "");
+    this.draw();
+  }
+
+  /** @param {LessonView} lesson */
+  show(lesson) {
+    this.open = isOpen(lesson);
+    this.draw();
+  }
+
+  draw() {
+    this.box.hidden = !this.there || !this.open;
+  }
+}
+
+const command = () => make("code", { textContent: "ratslam run --class" });

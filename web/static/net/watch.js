@@ -7,7 +7,7 @@ import { $ } from "../ui/elements.js";
 /** Whether a message concerns the page alone. @param {string} kind */
 export const isLook = (kind) => /** @type {readonly string[]} */ (LOOKS).includes(kind);
 
-/** @type {ReadonlySet<import("../driving/keys.js").Act>} */
+/** @type {ReadonlySet<import("../ui/keys.js").Act>} */
 export const KEYS = new Set(["view1", "view2", "view3", "view4", "follow", "panel", "theme", "present", "escape"]);
 
 const WATCHER = "watch-";

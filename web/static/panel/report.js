@@ -2,8 +2,7 @@
 // the packets before and after, and the views that played a part.
 
 import { make, renew, say, svg } from "../ui/elements.js";
-import { Histogram, Picture } from "./canvases.js";
-import { caption, choice, heading, note, Table } from "./parts.js";
+import { caption, choice, heading, Histogram, note, Picture, Table } from "./parts.js";
 
 const TITLES = { experience: "experience", view: "local view cell", cell: "pose cells at", why: "why, at" };
 

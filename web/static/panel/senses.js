@@ -1,11 +1,10 @@
 // Senses: what the robot sees and feels, what is active among its views, and the pose cells from above.
 
 import { make, say } from "../ui/elements.js";
-import { colourOf, Histogram, mix, Picture } from "./canvases.js";
-import { Bar, caption } from "./parts.js";
+import { Bar, caption, colourOf, Histogram, mix, Picture } from "./parts.js";
 
-/** @typedef {import("./canvases.js").Rgb} Rgb */
-/** @typedef {import("./canvases.js").Pixels} Pixels */
+/** @typedef {import("./parts.js").Rgb} Rgb */
+/** @typedef {import("./parts.js").Pixels} Pixels */
 
 export const STRIP = { rows: 6, columns: 34, square: 6 }; // squares of the local view cells, and pixels of one
 

@@ -1,7 +1,7 @@
 // The run as a file for other programs: a dialog with the formats, and the download of the one that was chosen.
 
 import { $, make } from "../ui/elements.js";
-import { toast } from "../ui/toasts.js";
+import { toast } from "../ui/words.js";
 import { reasons } from "../net/post.js";
 import { download } from "./pictures.js";
 

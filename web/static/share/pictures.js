@@ -1,10 +1,9 @@
 // Pictures as files: vector pictures as they are, or drawn into pixels, and plots against time as vector pictures. Their names tell
 // run and moment.
 
-import { clock } from "../ui/words.js";
+import { clock, toast } from "../ui/words.js";
 import { tickTimesIn } from "../timeline/line.js";
 import { make } from "../ui/elements.js";
-import { toast } from "../ui/toasts.js";
 
 const [WIDE, HIGH, LEFT, RIGHT, TOP, BOTTOM] = [900, 420, 70, 24, 76, 58]; // pixels
 const MOST = 1500; // points of a line

@@ -3,9 +3,8 @@
 
 import { $, find, say, setIcon } from "../ui/elements.js";
 import { download } from "./pictures.js";
-import { fine } from "../ui/words.js";
+import { fine, toast } from "../ui/words.js";
 import { post } from "../net/post.js";
-import { toast } from "../ui/toasts.js";
 
 /** @param {Moment} moment @param {string} time */
 export function momentWords({ tick, state_hash, orders }, time) {

@@ -1,7 +1,7 @@
 // "Until": runs as fast as it can until something happens, and stops at that very tick.
 
 import { $, make, renew, say } from "../ui/elements.js";
-import { toast } from "../ui/toasts.js";
+import { toast } from "../ui/words.js";
 
 /** @type {{ words: string, wish: Omit<RunUntil, "type"> }[]} */
 export const CHOICES = [

@@ -3,12 +3,11 @@
 
 import { $, make, svg } from "../ui/elements.js";
 import { clock, fine } from "../ui/words.js";
-import { labelsOf, marksOf, tickTimesIn, whole, within, zoomed } from "./line.js";
+import { labelsOf, marksOf, Pointers, tickTimesIn, whole, within, zoomed } from "./line.js";
 import { counted, EventList, legend, markAt, nameOf, words } from "./events.js";
 import { Comparison, parted } from "./comparison.js";
 import { Bookmarks } from "./bookmarks.js";
-import { Pointers, Seeker } from "./seeker.js";
-import { Tools } from "./tools.js";
+import { Seeker, Tools } from "./tools.js";
 
 const REDRAW_MS = 500;
 const MOST = 2000; // events, as the server keeps them

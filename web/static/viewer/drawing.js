@@ -2,7 +2,7 @@
 // it cannot draw. The drawing goes on with the run, and a click on it is one on the plates.
 
 import { $, find } from "../ui/elements.js";
-import { toast } from "../ui/toasts.js";
+import { toast } from "../ui/words.js";
 
 const ANEW_MS = 1000; // a picture costs the server some hundredths of a second
 const FADE_MS = 400;

@@ -2,7 +2,7 @@
 // graphics context; when either is another, it is thrown away and built anew. While it has drawn nothing, the drawing stands there.
 
 import { $, find } from "../ui/elements.js";
-import { toast } from "../ui/toasts.js";
+import { toast } from "../ui/words.js";
 import { takeClicks, takePinches } from "./fingers.js";
 import { Drawing } from "./drawing.js";
 import { fewerPixels, firstFrame, isSoftware, restBetweenFrames, spareSoftware, whoDraws } from "./frames.js";
@@ -19,7 +19,7 @@ const WORDS = {
 export const phone = () => window.matchMedia("(max-width: 760px), (pointer: coarse) and (max-height: 500px)").matches;
 
 export class Viewer extends EventTarget {
-  /** @param {import("../net/connection.js").Connection} link @param {import("../driving/keys.js").Keys} keys */
+  /** @param {import("../net/connection.js").Connection} link @param {import("../ui/keys.js").Keys} keys */
   constructor(link, keys) {
     super();
     this.link = link;

@@ -2,8 +2,7 @@
 
 import { $ } from "../ui/elements.js";
 import { chosen, dropped, isRecording, play, playFolder } from "./recordings.js";
-import { ended, megabytes } from "../ui/words.js";
-import { toast } from "../ui/toasts.js";
+import { ended, megabytes, toast } from "../ui/words.js";
 
 const PICTURE = /\.(pgm|png|bmp|jpe?g|ppm|pbm|webp|tiff?|gif)$/i;
 const MOST_BYTES = 16_000_000;

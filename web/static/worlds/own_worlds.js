@@ -3,7 +3,7 @@
 
 import { $, find, icon, labelled, make } from "../ui/elements.js";
 import { post, worlds } from "../net/post.js";
-import { toast } from "../ui/toasts.js";
+import { toast } from "../ui/words.js";
 
 /** The first of my-world, my-world-2, ... that no world has. @param {WorldTitles} taken */
 export function freeName({ yours, ours }) {

@@ -1,4 +1,4 @@
-// Points and lines of the office, metres. No DOM.
+// Points and lines of the office, metres.
 
 const ROUND = 1000; // to the millimetre
 

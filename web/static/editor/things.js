@@ -1,8 +1,10 @@
-// The kinds of things in a world file: where they can be gripped, how they are moved, and their fields. No DOM.
+// The kinds of things in a world file: where they can be gripped, how they are moved, which is near a point, and the form beside the
+// plan with the properties of the selected one.
 
 import { LIMITS, WALL_KINDS } from "../shared.js";
-import { at, away, corners, degrees, plus, round, tip, toArea, toPath, toSegment, turned } from "./geometry.js";
+import { at, away, corners, degrees, length, plus, round, tip, toArea, toPath, toSegment, turned } from "./geometry.js";
 import { fitted, pulledEnds } from "./walls.js";
+import { field as target, find } from "../ui/elements.js";
 
 const LEAST_M = 0.05; // the least that can be seen and gripped; a file needs only more than 0
 
@@ -187,4 +189,109 @@ export function moved(world, { list, number, grip, item }, from, to) {
   const ends = grips(item).map((end, k) => [end, grips(now)[k]]);
   const moves = grip === null ? ends : [ends[grip]];
   return { now, steps: [...steps, ...pulledEnds(world, moves, [number])] };
+}
+
+const RADIUS_M = 0.22; // of a person without a radius of their own
+/** @type {ThingList[]} small things first, since they lie on large ones */
+const ORDER = ["places", "starts", "doors", "boxes", "lamps", "people", "walls", "slow_zones"];
+
+/**
+ * The thing nearest to a point within `reach` metres, from the first list that has one. People who walk are also found where
+ * they are now.
+ * @param {Partial<World>} world
+ * @param {Point} p
+ * @param {number} reach
+ * @param {Moving["walkers"]} [walkers]
+ * @returns {Place | null}
+ */
+export function thingNear(world, p, reach, walkers = {}) {
+  for (const list of ORDER) {
+    const items = /** @type {any[]} */ (world[list] ?? []);
+    const fars = items.map((item) => {
+      const far = kindOf(list).far(item, p);
+      if (list !== "people" || !item.name || !(item.name in walkers)) return far;
+      const [x, y] = walkers[item.name];
+      return Math.min(far, away([x, y], p) - (item.radius ?? RADIUS_M));
+    });
+    const least = fars.reduce((a, b) => Math.min(a, b), Infinity); // ten thousand walls would be too many arguments for Math.min
+    if (least <= reach) return { list, number: fars.indexOf(least) };
+  }
+  return null;
+}
+
+/** The end of a wall nearest to a point within `reach` metres, or null. @param {Pick<World, "walls">} world @param {Point} p @param {number} reach */
+export function endNear(world, p, reach) {
+  /** @type {Point | null} */
+  let best = null;
+  for (const end of world.walls.flatMap((wall) => [wall.from, wall.to]))
+    if (away(end, p) <= reach && (best === null || away(end, p) < away(best, p))) best = end;
+  return best;
+}
+
+export class Fields {
+  /**
+   * @param {HTMLFormElement} form
+   * @param {(item: any) => void} change when something was typed in
+   * @param {() => void} remove for the button
+   */
+  constructor(form, change, remove) {
+    this.form = form;
+    this.change = change;
+    /** @type {(Place & { item: any }) | null} */
+    this.thing = null;
+    form.addEventListener("submit", (event) => event.preventDefault());
+    form.addEventListener("input", (event) => {
+      target(event).dataset.typed = "yes";
+    });
+    form.addEventListener("change", (event) => this.changed(target(event)));
+    find(form, ".remove").addEventListener("click", remove);
+  }
+
+  /** @param {(Place & { item: any }) | null} thing */
+  show(thing) {
+    this.form.hidden = !thing;
+    const same = thing && this.thing?.list === thing.list && this.thing?.number === thing.number;
+    this.thing = thing;
+    if (!thing) return;
+    const { one, fields } = kindOf(thing.list);
+    const metres = thing.list === "walls" ? `, ${length(thing.item).toFixed(2)} m` : "";
+    find(this.form, "h2").textContent = `${one[0].toUpperCase()}${one.slice(1)}${metres}`;
+    const rows = find(this.form, ".rows");
+    if (!same) rows.replaceChildren(...fields.map((field) => row(field)));
+    for (const field of fields) {
+      /** @type {HTMLInputElement} */
+      const input = find(rows, `[data-key="${CSS.escape(field.key)}"]`);
+      if (input.dataset.typed) continue; // somebody is typing here, and news of the office must not overwrite it
+      const value = read(thing.item, field.key);
+      if (field.type === "checkbox") input.checked = value ?? field.key !== "slides";
+      else input.value = value ?? DEFAULTS[field.key] ?? "";
+    }
+  }
+
+  /** @param {HTMLInputElement} input */
+  changed(input) {
+    delete input.dataset.typed;
+    if (!this.thing) return;
+    const field = kindOf(this.thing.list).fields.find(({ key }) => key === input.dataset.key);
+    if (!field || !input.reportValidity()) return;
+    const typed = field.type === "number" ? Number(input.value) : input.value;
+    this.change(written(this.thing.item, field.key, field.type === "checkbox" ? input.checked : typed));
+  }
+}
+
+/** @type {Record<string, string | number>} */
+const DEFAULTS = { kind: "wall", swing_deg: 90, period_s: 0, open_s: 0, angle_deg: 0 };
+
+/** @param {Field} field */
+function row({ key, title, type, low, high, of }) {
+  const input = document.createElement(of ? "select" : "input");
+  input.dataset.key = key;
+  if (input instanceof HTMLSelectElement) input.append(...(of ?? []).map((name) => new Option(name)));
+  else input.type = type;
+  if (type === "number") Object.assign(input, { min: low, max: high, step: "any", required: true });
+  if (type === "text") Object.assign(input, { maxLength: 40, required: true, autocomplete: "off" });
+  const label = document.createElement("label");
+  label.append(Object.assign(document.createElement("span"), { textContent: title }), input);
+  if (type === "checkbox") label.classList.add("flag");
+  return label;
 }

@@ -1,6 +1,8 @@
-// The script of a world: what its lines can do, to which things, and how times are written. No DOM.
+// What happens when in a world: what the lines of its script can do, to which things, how times are written, and the fields for a time
+// and for a level, in lists that are drawn anew.
 
 import { SCRIPT_ACTIONS } from "../shared.js";
+import { labelled, make } from "../ui/elements.js";
 
 /** @typedef {EventItem["do"]} Action */
 /** @typedef {"doors" | "lamps" | "boxes"} Actors */
@@ -88,3 +90,67 @@ export const firstAction = (world) => {
   const possible = SCRIPT_ACTIONS.find((name) => ACTIONS[name].of && namesOf(world ?? {}, ACTIONS[name].of).length);
   return possible ?? "daylight";
 };
+
+export const NO_LEVEL = (/** @type {string} */ text) =>
+  `“${text}” is no level; write a number from 0, which is dark, to 3. 1 is as painted.`;
+
+/** @param {string} label @param {string} value */
+export const timeInput = (label, value) =>
+  labelled(
+    label,
+    make("input", {
+      type: "text",
+      className: "when",
+      value,
+      required: true,
+      autocomplete: "off",
+      inputMode: "text",
+      maxLength: 12,
+    }),
+  );
+
+/** @param {string} label @param {number} value */
+export const levelInput = (label, value) =>
+  labelled(
+    label,
+    make("input", {
+      type: "number",
+      className: "level",
+      value: String(value),
+      min: "0",
+      max: "3",
+      step: "any",
+      required: true,
+    }),
+  );
+
+/** @param {Element} input @param {boolean} wrong */
+export function mark(input, wrong) {
+  if (wrong) input.setAttribute("aria-invalid", "true");
+  else input.removeAttribute("aria-invalid");
+}
+
+/**
+ * Draw a list anew. The focus stays where it was, and so does text that somebody is typing.
+ * @param {HTMLElement} list
+ * @param {HTMLElement} form gets the focus when the list is empty
+ * @param {() => void} draw
+ */
+export function keepingPlace(list, form, draw) {
+  const held = list.contains(document.activeElement) ? /** @type {HTMLInputElement} */ (document.activeElement) : null;
+  const number = held?.closest("li")?.dataset.number;
+  const kind = held?.classList.contains("remove") ? "remove" : held?.classList[0];
+  const [typed, count] = [held?.dataset.typed && held.value, list.children.length];
+  draw();
+  if (!held) return;
+  const row = list.querySelector(`li[data-number="${number}"]`);
+  const near = row ?? list.lastElementChild ?? form;
+  /** @type {HTMLInputElement | null} */
+  const place =
+    row?.querySelector(`.${kind}`) ?? near.querySelector(kind === "remove" ? ".remove, .when" : ".what, .when");
+  if (typed && row && place && list.children.length === count) {
+    place.value = typed;
+    place.dataset.typed = "yes";
+  }
+  place?.focus();
+}

@@ -1,7 +1,7 @@
 // Every key of the page, once: what it means where it is pressed. The page acts by this table, and the help is written from it.
 // Keys are handled before viser sees them, in the page and in the viewer's frame.
 
-import { within } from "../ui/elements.js";
+import { within } from "./elements.js";
 
 /**
  * `keys`: as the browser calls them, lower case. `act`: what they do; main.js has a function for each. `words`: for people.

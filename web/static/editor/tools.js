@@ -1,4 +1,4 @@
-// The drawing tools: how many points each takes, what to click next, and what the points make. No DOM.
+// The drawing tools: how many points each takes, what to click next, and what the points make.
 
 import { LIMITS } from "../shared.js";
 import { at, away, degrees, round } from "./geometry.js";

@@ -1,8 +1,92 @@
-// The places that the robot knows as a list, for who does not see the map: what each is called and where it is, seen from the
-// robot. Type, choose, go there or look at it.
+// For who does not see the plates: what happens is read aloud, events that matter and not too many at once; and the places that the
+// robot knows are a list, with where each is, seen from the robot: type, choose, go there or look at it.
 
-import { $, make, renew } from "../ui/elements.js";
+import { nameOf, weightOf } from "../timeline/events.js";
+import { ended } from "./words.js";
+import { $, make, renew } from "./elements.js";
 import { get } from "../net/post.js";
+
+const TOLD = new Set(
+  /** @type {EventKind[]} */ ([
+    "kidnap",
+    "lost",
+    "believes",
+    "joined",
+    "corrected",
+    "recovered",
+    "goal",
+    "arrived",
+    "unreachable",
+    "closure",
+    "fault",
+    "trial",
+    "reached",
+    "failed",
+    "tagged",
+    "branch",
+    "recording",
+    "snap",
+    "lesson",
+  ]),
+); // not "warning": its toast is in a live region of its own
+/** Kinds that come in swarms: not again within so many seconds. @type {Record<string, number>} */
+const SELDOM_S = { snap: 15, closure: 6 };
+const MOST_EVENTS = 3; // events in one breath
+
+export class Speech {
+  /** @type {Pick<TimelineEvent, "kind" | "text">[]} */
+  #waiting = [];
+
+  /** When each kind was last taken in, s. @type {Map<string, number>} */
+  #heard_s = new Map();
+
+  /** @param {Pick<TimelineEvent, "kind" | "text">[]} events @param {number} now_s of the wall clock */
+  hear(events, now_s) {
+    for (const event of events) {
+      const { kind } = event;
+      const silent_s = now_s - (this.#heard_s.get(kind) ?? -Infinity);
+      if (!TOLD.has(/** @type {EventKind} */ (kind)) || silent_s < (SELDOM_S[kind] ?? 0)) continue;
+      this.#heard_s.set(kind, now_s);
+      this.#waiting.push(event);
+    }
+  }
+
+  /** The next words, "" when there is nothing to say. Of too many, those of the greatest weight are said, in their order. */
+  next() {
+    const weights = this.#waiting.map(({ kind }) => weightOf(kind)).sort((a, b) => b - a);
+    const least = weights[MOST_EVENTS - 1] ?? -Infinity;
+    const said = this.#waiting.filter(({ kind }) => weightOf(kind) >= least).slice(-MOST_EVENTS);
+    const left = this.#waiting.length - said.length;
+    this.#waiting = [];
+    const words = said.map(({ kind, text }) =>
+      ended(text.startsWith(nameOf(kind)) ? text : `${nameOf(kind)}: ${text}`),
+    );
+    return words.join(" ") + (left > 0 ? ` And ${left} more ${left === 1 ? "event" : "events"}.` : "");
+  }
+}
+
+const BREATH_MS = 3000;
+
+export class Speaker {
+  constructor() {
+    this.speech = new Speech();
+    this.silent = true; // until something waits
+  }
+
+  /** Events that have just happened. @param {TimelineEvent[]} events */
+  hear(events) {
+    this.speech.hear(events, performance.now() / 1000);
+    if (this.silent) this.speak();
+  }
+
+  speak() {
+    const words = this.speech.next();
+    this.silent = words === "";
+    if (this.silent) return;
+    $("said").textContent = words;
+    setTimeout(() => this.speak(), BREATH_MS);
+  }
+}
 
 /**
  * Map frame, metres. `seconds`: the quickest way; null: none is known.
@@ -65,7 +149,7 @@ function spread(places, from) {
   return kept;
 }
 
-const MOST = 60; // rows
+const MOST_ROWS = 60; // rows
 
 export class PlaceList {
   /**
@@ -102,7 +186,7 @@ export class PlaceList {
   }
 
   get found() {
-    return this.places ? choices(this.places, $("places-typed").value, MOST) : [];
+    return this.places ? choices(this.places, $("places-typed").value, MOST_ROWS) : [];
   }
 
   draw() {
