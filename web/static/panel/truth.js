@@ -20,7 +20,7 @@ class Plot {
     this.box.append(saveButtons(words, () => ({ columns: this.data, lines })));
     this.box.setAttribute("role", "group");
     this.box.setAttribute("aria-label", words);
-    /** @type {import("../vendor/uplot/uPlot.esm.js").default | null} */
+    /** @type {import("../vendor/uPlot.esm.js").default | null} */
     this.plot = null;
     /** @type {ArrayLike<number>[] | null} */
     this.data = null;
@@ -39,7 +39,7 @@ class Plot {
 
   /** Draws the plot anew, in the colours of the theme. */
   async build() {
-    const { default: uPlot } = await import("../vendor/uplot/uPlot.esm.js");
+    const { default: uPlot } = await import("../vendor/uPlot.esm.js");
     this.plot?.destroy();
     this.plot = null;
     if (!this.data || this.box.clientWidth === 0) return; // the tab has been left meanwhile

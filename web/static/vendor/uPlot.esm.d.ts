@@ -1,4 +1,4 @@
-// Of uPlot, what panel/plot.js uses: for the type check.
+// Of uPlot, what panel/truth.js uses: for the type check.
 type Columns = ArrayLike<number>[];
 
 export default class uPlot {
