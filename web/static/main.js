@@ -14,18 +14,17 @@ import { closeOpenMenu, Header, Theming } from "./header/header.js";
 import { actOf, Keys } from "./ui/keys.js";
 import { Lesson } from "./lessons/lesson.js";
 import { LessonList } from "./lessons/list.js";
-import { Connection } from "./net/connection.js";
+import { Connection, WATCHER_KEYS, newId, onlyLook, takeNoFiles } from "./net/connection.js";
 import { dismissToast, sentence, toast } from "./ui/words.js";
 import { NewWorld, OwnWorlds } from "./worlds/own_worlds.js";
 import { VIEWS } from "./shared.js";
 import { PlaceList, Speaker } from "./ui/access.js";
 import { Keeping } from "./share/keeping.js";
 import { Panel } from "./panel/panel.js";
-import { RunUntilMenu } from "./timeline/run_until.js";
+import { RunUntilMenu } from "./timeline/tools.js";
 import { Source } from "./worlds/recordings.js";
 import { Viewer } from "./viewer/viewer.js";
 import { Timeline } from "./timeline/timeline.js";
-import { KEYS, newId, onlyLook, takeNoFiles } from "./net/watch.js";
 
 const watching = document.body.dataset.watch === "true";
 const page = newId(watching);
@@ -265,7 +264,7 @@ function endPresenting() {
 /** True when the key had a meaning. @param {string} key */
 function act(key) {
   const name = actOf(key);
-  return name !== undefined && (!watching || KEYS.has(name)) && ACTS[name]() !== false;
+  return name !== undefined && (!watching || WATCHER_KEYS.has(name)) && ACTS[name]() !== false;
 }
 
 /** @param {keyof IndexIds} id @param {() => void} action */

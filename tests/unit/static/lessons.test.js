@@ -5,7 +5,7 @@ import { test } from "node:test";
 import * as lessons from "../../../web/static/lessons/words.js";
 import { outline, turned } from "../../../web/static/lessons/question.js";
 import { cardFacts, chapters, linked, nextAfter } from "../../../web/static/lessons/list.js";
-import { CHOICES, ending } from "../../../web/static/timeline/run_until.js";
+import { CHOICES, ending } from "../../../web/static/timeline/tools.js";
 import { voteWords } from "../../../web/static/lessons/words.js";
 import { segment } from "./made.js";
 
