@@ -169,6 +169,7 @@ export class BesideStrip {
   }
 }
 
+/** One of our additions, chosen by name, with what it is good for. */
 class AdditionChoice {
   /** @param {(name: string, since: "beginning" | "now") => void} begin */
   constructor(begin) {

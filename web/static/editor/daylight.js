@@ -6,6 +6,7 @@ import { isLevel, keepingPlace, levelInput, mark, NO_LEVEL, NO_TIME, seconds, ti
 export const [WIDTH, HEIGHT, LEFT, RIGHT, TOP, BOTTOM] = [316, 112, 26, 8, 8, 20]; // of the picture, and margins around its axes
 const LEAST_S = 60;
 
+/** The daylight against time as a curve in a small picture. */
 export class DaylightCurve {
   /** @param {DaylightItem | null} day */
   constructor(day) {

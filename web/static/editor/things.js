@@ -228,6 +228,7 @@ export function endNear(world, p, reach) {
   return best;
 }
 
+/** The form with the properties of the selected thing. */
 export class Fields {
   /**
    * @param {HTMLFormElement} form

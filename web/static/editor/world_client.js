@@ -98,6 +98,7 @@ export class WorldClient {
   }
 }
 
+/** The dialog that saves the office under a name. */
 export class SaveDialog {
   /** @param {WorldClient} office */
   constructor(office) {

@@ -1,5 +1,5 @@
 // The experiments of the papers in a dialog: all of them as cards, or one with its trials. And the note on the stage about the trial
-// that is being watched: what is being done, how far it is, and what came of it.
+// that is being watched.
 
 import { $, find, icon, make, say, svg } from "../ui/elements.js";
 import { engineWords, firstEngine, Grid } from "./grid.js";
@@ -209,6 +209,7 @@ export function trialWords(trial, time_s) {
   return { which, settings, doing, clock: time, share: Math.min(1, time_s / Math.max(1, trial.about_s)) };
 }
 
+/** The note on the stage about the trial that is being watched. */
 export class Watched {
   /** @param {{ here: () => void, again: (wish: WatchExperiment) => void, more: () => void }} actions */
   constructor({ here, again, more }) {

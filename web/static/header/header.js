@@ -124,6 +124,7 @@ function choose(select, value) {
   select.value = value;
 }
 
+/** Light or dark. The choice is each viewer's own: the server shows this page the plates of its theme. */
 export class Theming {
   /** @param {import("../net/connection.js").Connection} link */
   constructor(link) {

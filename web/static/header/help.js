@@ -62,6 +62,7 @@ function groupOf({ title, rows }, driving) {
 const KEY = "first minute";
 const STRIDE = 300; // ticks between two looks at how far it is
 
+/** The first visit, as a card. */
 export class FirstMinuteCard {
   /** @param {import("../net/connection.js").Connection} link */
   constructor(link) {
@@ -177,6 +178,7 @@ export class FirstMinuteCard {
   }
 }
 
+/** The three things that a newcomer does, and when each is done. */
 export class FirstMinute {
   explored = false;
   reached = false;

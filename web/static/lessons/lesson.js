@@ -257,6 +257,7 @@ export class Lesson {
   }
 }
 
+/** Where the class votes: large and with a QR code for whoever looks at a screen from afar, else a line below the question. */
 class Invitation {
   constructor() {
     this.box = $("lesson-class");

@@ -33,6 +33,7 @@ const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowD
 /** @typedef {{ name: string, at: Point, words: string, heading?: number }} Pin where something is; its name is its look */
 /** @typedef {{ lines: [Point, Point][], dots: Point[], turn: number }} Drawing m, and the angle by which it is turned for the eye */
 
+/** A small plan on which the class draws where it will end. */
 class Plan {
   /** @param {(at: Point) => void} draw called with metres when somebody draws a point */
   constructor(draw) {

@@ -104,6 +104,7 @@ export function choice(kind, number, text, inspect) {
 
 /** @typedef {{ name: string, tab: string, words: string, hint: string, on: boolean }} Switch */
 
+/** The switches of one tab that all pages share (web/switches.py). */
 export class SwitchList {
   /** @param {string} tab @param {import("./panel.js").Ask} ask */
   constructor(tab, ask) {
@@ -183,6 +184,7 @@ export function bars(values) {
 /** A colour of the page's theme. @param {string} name of a custom property, without its dashes */
 export const colourOf = (name) => rgb(getComputedStyle(document.documentElement).getPropertyValue(`--${name}`));
 
+/** Pixels in a canvas as they are, enlarged without smoothing. */
 export class Picture {
   /** @param {string} words what it shows, for people who cannot see it: from the beginning, before there is anything to show */
   constructor(words) {

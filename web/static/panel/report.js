@@ -129,6 +129,7 @@ const MOST_VIEWS = 4;
 /** @typedef {[number, number, number, number]} Packet number, x, y (cells), share of the activity */
 /** @typedef {{ id: number, without: number[], event: string, number: string, cells: [number, number], packets: [Packet[], Packet[]], seen: [number, string][], said: [number, number][] }} Told */
 
+/** Why something happened: the chain of what led to it, the packets before and after, and the views that played a part. */
 class Why {
   /** @param {(wish: Record<string, number>) => void} inspect @param {import("./panel.js").Ask} ask */
   constructor(inspect, ask) {

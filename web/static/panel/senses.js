@@ -40,6 +40,7 @@ export function viewStrip({ views, active, recent }, colours) {
 /** @type {Record<string, number>} */
 const STEPS = { ArrowRight: 1, ArrowLeft: -1, ArrowDown: STRIP.columns, ArrowUp: -STRIP.columns };
 
+/** The local view cells as a strip of squares. A click on a square inspects its first view, and the keys do the same. */
 class ViewStrip {
   /** @param {(wish: Record<string, number>) => void} inspect */
   constructor(inspect) {

@@ -56,6 +56,7 @@ export const isDefault = (parameter) => parameter.value === parameter.default;
 
 let count = 0;
 
+/** One parameter as a control: its name, symbol and unit, its value, and a way back to the default. */
 export class Knob {
   /** @param {Parameter} parameter @param {import("./panel.js").Ask} ask */
   constructor(parameter, ask) {

@@ -21,6 +21,7 @@ const BITS = 6_000_000; // a second
 const LATELY_S = 10;
 const LOOKS = 40; // frames that a picture waits for
 
+/** The plates as they are on the stage: a picture of them, and a film of a stretch of time, made from viser's canvas. */
 class StageFilm {
   /**
    * @param {import("../net/connection.js").Connection} link

@@ -30,6 +30,7 @@ export function situationWords({ state, tick, end_tick, words }) {
   return { title: titles[state], words: state === "playing" ? far : words, share: end_tick ? tick / end_tick : 1 };
 }
 
+/** The moment as a link, as a file, and as lines of Python. */
 export class Share {
   /** @param {() => { plate: ViewName, tab: string, page: string }} look what this page shows */
   constructor(look) {
@@ -116,6 +117,7 @@ export class Share {
 
 const ICONS = /** @type {const} */ ({ playing: "share", same: "check", other: "warn", stopped: "warn" });
 
+/** Opens what somebody else has made of a moment, and shows it as they saw it. */
 export class Opening {
   /**
    * @param {import("../net/connection.js").Connection} link

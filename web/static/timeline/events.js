@@ -90,6 +90,7 @@ export function legend() {
 
 const MOST = 200; // rows
 
+/** All events as a list that can be filtered by kind; a click goes to that moment. */
 export class EventList {
   /** @param {import("./timeline.js").Timeline} timeline */
   constructor(timeline) {

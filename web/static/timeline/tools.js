@@ -1,5 +1,5 @@
 // What steers time: the buttons above the timeline (steps, events, marks of a loop, branches, going on from the past and back to now),
-// who asks for moments of the past, and "Until": runs as fast as it can until something happens, and stops at that very tick.
+// who asks for moments of the past, and what to run until.
 
 import { $, find, icon, labelled, make, renew, say } from "../ui/elements.js";
 import { clock, fine, toast } from "../ui/words.js";
@@ -194,6 +194,7 @@ export const ending = ({ state, words }) => (state === "met" ? `Stopped at this 
 
 /** @typedef {Omit<RunUntil, "type">} Wish */
 
+/** "Until": runs as fast as it can until something happens, and stops at that very tick. */
 export class RunUntilMenu {
   /**
    * @param {(wish: Command) => Promise<boolean>} command

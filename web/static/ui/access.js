@@ -1,5 +1,4 @@
-// For who does not see the plates: what happens is read aloud, events that matter and not too many at once; and the places that the
-// robot knows are a list, with where each is, seen from the robot: type, choose, go there or look at it.
+// For who does not see the plates: what happens is read aloud, and the places that the robot knows are a list.
 
 import { nameOf, weightOf } from "../timeline/events.js";
 import { ended } from "./words.js";
@@ -33,6 +32,7 @@ const TOLD = new Set(
 const SELDOM_S = { snap: 15, closure: 6 };
 const MOST_EVENTS = 3; // events in one breath
 
+/** What is read aloud: events that matter, not too many at once. */
 export class Speech {
   /** @type {Pick<TimelineEvent, "kind" | "text">[]} */
   #waiting = [];
@@ -67,6 +67,7 @@ export class Speech {
 
 const BREATH_MS = 3000;
 
+/** Puts it into the page's live region, in breaths of some seconds. */
 export class Speaker {
   constructor() {
     this.speech = new Speech();
@@ -151,6 +152,7 @@ function spread(places, from) {
 
 const MOST_ROWS = 60; // rows
 
+/** The places that the robot knows: type, choose, go there or look at it. */
 export class PlaceList {
   /**
    * @param {(wish: Command, done?: string) => Promise<boolean>} command

@@ -63,6 +63,7 @@ export class Aids {
   }
 }
 
+/** The presenter's mode: the panel away, larger type, a spotlight that follows the pointer, next and back by a clicker's keys. */
 export class Presenter {
   /**
    * @param {import("./viewer.js").Viewer} viewer

@@ -13,6 +13,7 @@ export function freeName({ yours, ours }) {
   return name();
 }
 
+/** The dialog that begins a new, empty world. */
 export class NewWorld {
   /**
    * @param {() => boolean} isSaved whether nothing would be lost
@@ -53,6 +54,7 @@ export class NewWorld {
   }
 }
 
+/** The saved worlds: to open, to delete, and to bring back. */
 export class OwnWorlds {
   /**
    * @param {() => string | undefined} now the name of the world that is open

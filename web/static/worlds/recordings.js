@@ -6,6 +6,7 @@ import { ended, megabytes } from "../ui/words.js";
 
 const OFFICE_TABS = ["Office"];
 
+/** Where the session comes from: an office that is simulated, or a recording. */
 export class Source {
   /** @param {import("../panel/panel.js").Panel} panel */
   constructor(panel) {
