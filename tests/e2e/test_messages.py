@@ -24,7 +24,7 @@ CLEAR = """() => {
     const inside = (a) => a.left >= 0 && a.right <= innerWidth && a.width > 40;
     return toasts.length > 0 && toasts.every((toast, k) =>
         inside(toast) && [...parts, ...toasts.slice(k + 1)].every((other) => apart(toast, other))); }"""
-SAY = "async ([words, options]) => { (await import('/static/elements/toasts.js')).toast(words, options); }"
+SAY = "async ([words, options]) => { (await import('/static/ui/words.js')).toast(words, options); }"
 LONG = (
     "The robot stays where it is: (3.1, 4.2) is 0.103 m from the wall; the robot needs 0.2 m of free floor around it."
 )

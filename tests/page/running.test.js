@@ -84,7 +84,7 @@ test("a refusal is a sentence; of toasts there is the same only once, the newest
 
 test("every event has a name, a mark and a place in the legend; what goes wrong is told to everyone", () =>
   fresh(async (page) => {
-    const { kinds } = await import("../../web/static/model/event_kinds.js");
+    const { kinds } = await import("../../web/static/timeline/events.js");
     await command("step", { ticks: 300 });
     await page.says("#clock", "0:30");
     const event = (/** @type {number} */ time_s, /** @type {string} */ kind, text = `text of ${kind}`) => ({

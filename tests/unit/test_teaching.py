@@ -18,8 +18,8 @@ ROOT = Path(__file__).parents[2]
 STATIC = ROOT / "web" / "static"
 PAGE = (ROOT / "docs" / "teaching.md").read_text("utf-8")
 LESSONS = {lesson.name: lesson for lesson in catalogue()}
-KEYS = (STATIC / "model" / "key_table.js").read_text("utf-8")
-WRITTEN = {" ": "space", "Escape": "esc", "PageDown": "page down", "PageUp": "page up"}  # as in key_table.js
+KEYS = (STATIC / "ui" / "keys.js").read_text("utf-8")
+WRITTEN = {" ": "space", "Escape": "esc", "PageDown": "page down", "PageUp": "page up"}  # as in keys.js
 CODE, SLANTED = r"(?<!`)`([^`\n]+)`", r"(?<!\*)\*([^*\n]+)\*(?!\*)"
 OUTCOMES = dict(re.findall(r"^\| `(\w+)` \| (\d+ \| .+) \|$", PAGE, re.MULTILINE))
 TAUGHT = re.findall(r"^\*\*\d:\d\d ([^*]+)\*\* \(`(\w+)`(.*?)\n\n", PAGE, re.MULTILINE | re.DOTALL)
@@ -39,7 +39,7 @@ def the_labels() -> set[str]:
             said |= set(re.findall(r'"([^"\n]+)"', script.read_text("utf-8")))
     said |= {pair.title for pair in pairs_beside(Config())} | set(TABS)
     said |= {each.button or "" for lesson in LESSONS.values() for each in lesson.sandbox}
-    return said | {f"Go on without {words}" for words in ("this view", "these views")}  # why.js
+    return said | {f"Go on without {words}" for words in ("this view", "these views")}  # report.js
 
 
 def unknown(code: str) -> bool:

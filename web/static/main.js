@@ -1,43 +1,34 @@
 // The page: puts the parts together and turns clicks and keys into commands. The server is the only truth.
 
-import { $, find } from "./elements/dom.js";
-import { BesideStrip } from "./beside/beside.js";
-import { FirstMinuteCard } from "./help/first_minute.js";
-import { HandDrive } from "./driving/drive.js";
-import { Aids } from "./viewer/aids.js";
+import { $, find } from "./ui/elements.js";
+import { BesideStrip } from "./brains/beside.js";
+import { FirstMinuteCard, Help } from "./header/help.js";
+import { HandDrive } from "./ui/drive.js";
+import { Aids, Presenter } from "./viewer/aids.js";
 import { Editor } from "./editor/editor.js";
-import { Exports } from "./export/export.js";
+import { Exports } from "./share/export.js";
 import { Files } from "./worlds/files.js";
-import { Gallery } from "./experiments/gallery.js";
-import { takeBrainFiles } from "./worlds/brain_file.js";
-import { Help } from "./help/help.js";
-import { Header } from "./header/header.js";
-import { actOf } from "./model/key_table.js";
+import { Gallery, Watched } from "./experiments/gallery.js";
+import { KeptBrain, takeBrainFiles } from "./brains/kept_brain.js";
+import { closeOpenMenu, Header, Theming } from "./header/header.js";
+import { actOf, Keys } from "./ui/keys.js";
 import { Lesson } from "./lessons/lesson.js";
 import { LessonList } from "./lessons/list.js";
-import { KeptBrain } from "./worlds/kept_brain.js";
-import { Keys } from "./driving/keys.js";
-import { Connection } from "./net/connection.js";
-import { closeOpenMenu } from "./header/menus.js";
-import { sentence } from "./model/sentences.js";
-import { NewWorld } from "./worlds/new_world.js";
-import { OwnWorlds } from "./worlds/own_worlds.js";
+import { Connection, WATCHER_KEYS, newId, onlyLook, takeNoFiles } from "./net/connection.js";
+import { dismissToast, sentence, toast } from "./ui/words.js";
+import { NewWorld, OwnWorlds } from "./worlds/own_worlds.js";
 import { VIEWS } from "./shared.js";
-import { PlaceList } from "./access/place_list.js";
+import { PlaceList, Speaker } from "./ui/access.js";
 import { Keeping } from "./share/keeping.js";
 import { Panel } from "./panel/panel.js";
-import { Speaker } from "./access/speaker.js";
-import { RunUntilMenu } from "./lessons/run_until.js";
-import { Presenter } from "./presenter/presenter.js";
-import { Source } from "./recordings/source.js";
+import { RunUntilMenu } from "./timeline/tools.js";
+import { Source } from "./worlds/recordings.js";
 import { Viewer } from "./viewer/viewer.js";
-import { Theming } from "./header/theming.js";
 import { Timeline } from "./timeline/timeline.js";
-import { dismissToast, toast } from "./elements/toasts.js";
-import { Watched } from "./experiments/watched.js";
-import { page, takeNoFiles, watching } from "./watch/watch.js";
-import { KEYS } from "./model/watching.js";
 
+const watching = document.body.dataset.watch === "true";
+const page = newId(watching);
+if (watching) onlyLook(page);
 const link = new Connection(page);
 const header = new Header();
 const timeline = new Timeline(link);
@@ -226,7 +217,7 @@ async function mayLeave() {
     dialog.addEventListener("close", () => resolve(dialog.returnValue === "leave"), { once: true }),
   );
 }
-/** What the keys of key_table.js do; false: it had no meaning now. @type {Record<import("./model/key_table.js").Act, () => unknown>} */
+/** What the keys of keys.js do; false: it had no meaning now. @type {Record<import("./ui/keys.js").Act, () => unknown>} */
 const ACTS = {
   explore,
   kidnap,
@@ -273,7 +264,7 @@ function endPresenting() {
 /** True when the key had a meaning. @param {string} key */
 function act(key) {
   const name = actOf(key);
-  return name !== undefined && (!watching || KEYS.has(name)) && ACTS[name]() !== false;
+  return name !== undefined && (!watching || WATCHER_KEYS.has(name)) && ACTS[name]() !== false;
 }
 
 /** @param {keyof IndexIds} id @param {() => void} action */

@@ -2,8 +2,16 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { additionChoice, additionGroups } from "../../../web/static/model/additions.js";
-import { HEADS, MEANS, cellsOf, changedWords, odometryWords, sinceWhen } from "../../../web/static/model/beside.js";
+import {
+  additionChoice,
+  additionGroups,
+  cellsOf,
+  changedWords,
+  HEADS,
+  MEANS,
+  odometryWords,
+  sinceWhen,
+} from "../../../web/static/brains/beside.js";
 import { ADDITIONS } from "../../../web/static/shared.js";
 
 const names = ADDITIONS.map(({ name }) => name);

@@ -2,7 +2,8 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import * as gallery from "../../../web/static/model/experiments.js";
+import * as gallery from "../../../web/static/experiments/grid.js";
+import { facts, lengthWords, trialWords } from "../../../web/static/experiments/gallery.js";
 
 /** @type {Dot} */
 const dot = { id: "a", seed: 7, quick: false, good: 2, of: 3, words: "2 of 3", moment_s: 65, moment: "printer: late" };
@@ -22,10 +23,10 @@ const trial = {
 };
 
 test("a length is in round words, and a card's facts leave out what there is none of", () => {
-  assert.deepEqual([2, 24, 61, 1320, 9000].map(gallery.lengthWords), ["5 s", "25 s", "60 s", "22 min", "2.5 h"]);
-  assert.equal(gallery.facts(card([])), "22 min a trial");
+  assert.deepEqual([2, 24, 61, 1320, 9000].map(lengthWords), ["5 s", "25 s", "60 s", "22 min", "2.5 h"]);
+  assert.equal(facts(card([])), "22 min a trial");
   const full = { ...card([axis("a", "1", "2"), axis("b", "3", "4", "5")]), done: 1 };
-  assert.equal(gallery.facts(full), "22 min a trial · 6 settings · 1 trial run here");
+  assert.equal(facts(full), "22 min a trial · 6 settings · 1 trial run here");
   assert.equal(gallery.firstEngine(full), "ours");
   assert.equal(gallery.firstEngine({ ...full, engines: ["paper"] }), "paper");
 });
@@ -61,14 +62,14 @@ test("a dot tells by its look, its face and its words how the trial went", () =>
 });
 
 test("the note on the stage says what is being done, how far it is, and what came of it", () => {
-  const now = gallery.trialWords(trial, 200);
+  const now = trialWords(trial, 200);
   assert.deepEqual([now.which, now.settings], ["Experiment table", "the paper's rules · 2 % · seed 7"]);
   assert.deepEqual([now.doing, now.clock, now.share], ["exploring", "3:20 of about 25:00", 200 / 1500]);
-  assert.equal(gallery.trialWords({ ...trial, altered: true }, 1).doing, "exploring, changed by hand");
-  const ahead = gallery.trialWords({ ...trial, ahead: 0.439 }, 200);
+  assert.equal(trialWords({ ...trial, altered: true }, 1).doing, "exploring, changed by hand");
+  const ahead = trialWords({ ...trial, ahead: 0.439 }, 200);
   assert.deepEqual([ahead.doing, ahead.clock], ["going to the moment that decided it", "43 %"]);
-  const over = gallery.trialWords({ ...trial, state: "over", outcome: "3 of 3 goals reached" }, 1600);
+  const over = trialWords({ ...trial, state: "over", outcome: "3 of 3 goals reached" }, 1600);
   assert.deepEqual([over.doing, over.share], ["over: 3 of 3 goals reached", 1]);
-  const ended = gallery.trialWords({ ...trial, state: "ended", outcome: "somebody drove the robot by hand" }, 90);
+  const ended = trialWords({ ...trial, state: "ended", outcome: "somebody drove the robot by hand" }, 90);
   assert.deepEqual([ended.doing, ended.share], ["ended: somebody drove the robot by hand", null]);
 });

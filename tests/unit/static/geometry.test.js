@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import * as plane from "../../../web/static/model/geometry.js";
+import * as plane from "../../../web/static/editor/geometry.js";
 import { path, points } from "./made.js";
 
 const { away, turned } = plane;

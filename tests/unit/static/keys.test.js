@@ -2,16 +2,15 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { meaningOf } from "../../../web/static/model/key_meanings.js";
-import { GROUPS, actOf, written } from "../../../web/static/model/key_table.js";
-import { KEYS, isLook, looksOn, newId } from "../../../web/static/model/watching.js";
+import { actOf, GROUPS, meaningOf, written } from "../../../web/static/ui/keys.js";
+import { isLook, WATCHER_KEYS, looksOn, newId } from "../../../web/static/net/connection.js";
 
 const NOWHERE = { typing: false, arrows: false, pressing: false, dialog: false };
 const FREE = { ctrlKey: false, metaKey: false, altKey: false, isComposing: false };
-/** @param {string} code @param {string} key @param {Partial<import("../../../web/static/model/key_meanings.js").Pressed>} [rest] */
+/** @param {string} code @param {string} key @param {Partial<import("../../../web/static/ui/keys.js").Pressed>} [rest] */
 const pressed = (code, key, rest = {}) => ({ code, key, ...FREE, ...rest });
 const ROWS = GROUPS.flatMap(
-  ({ rows }) => /** @type {readonly import("../../../web/static/model/key_table.js").Row[]} */ (rows),
+  ({ rows }) => /** @type {readonly import("../../../web/static/ui/keys.js").Row[]} */ (rows),
 );
 const HELP = ROWS.flatMap(({ keys }) => keys);
 
@@ -156,7 +155,7 @@ test("a page that only looks on says so, says what concerns itself alone, and ha
   assert.ok(["view", "theme", "tabs", "got"].every(isLook));
   assert.ok(!["kidnap", "switch", "replay", "present", "vote"].some(isLook));
   const acts = ROWS.map(({ act }) => act);
-  for (const act of KEYS) assert.ok(acts.includes(act), act);
+  for (const act of WATCHER_KEYS) assert.ok(acts.includes(act), act);
   for (const key of ["k", "e", " ", ".", "b", "x", "m", "o", "c", "PageDown"])
-    assert.ok(!KEYS.has(actOf(key) ?? "escape"), key);
+    assert.ok(!WATCHER_KEYS.has(actOf(key) ?? "escape"), key);
 });

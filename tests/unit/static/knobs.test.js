@@ -2,8 +2,8 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { groupOf, grouped, isDefault, means, printed, shortName } from "../../../web/static/model/knobs.js";
-import { partWords, shareOf, tickWords } from "../../../web/static/model/timings.js";
+import { grouped, groupOf, isDefault, means, printed, shortName } from "../../../web/static/panel/tune.js";
+import { partWords, shareOf, tickWords } from "../../../web/static/panel/tick.js";
 
 const SPEED = { name: "pilot.cruise_speed", symbol: "v", unit: "m/s", hint: "How fast it drives. Default: 0.3." };
 
@@ -28,7 +28,7 @@ test("what follows an underscore of a symbol is printed below the line; a way ba
 });
 
 test("a tick's parts are told against the time there is, and drawn against the dearest", () => {
-  /** @type {import("../../../web/static/model/timings.js").Timing[]} */
+  /** @type {import("../../../web/static/panel/tick.js").Timing[]} */
   const parts = [
     ["view match", 0.25, 0.7],
     ["attractor", 0.5, 1.04],

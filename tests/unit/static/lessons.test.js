@@ -2,9 +2,11 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import * as lessons from "../../../web/static/model/lessons.js";
-import { CHOICES, ending } from "../../../web/static/model/until.js";
-import { voteWords } from "../../../web/static/model/vote.js";
+import * as lessons from "../../../web/static/lessons/words.js";
+import { outline, turned } from "../../../web/static/lessons/question.js";
+import { cardFacts, chapters, linked, nextAfter } from "../../../web/static/lessons/list.js";
+import { CHOICES, ending } from "../../../web/static/timeline/tools.js";
+import { voteWords } from "../../../web/static/lessons/words.js";
 import { segment } from "./made.js";
 
 /** @param {string} name @param {Partial<LessonCard>} [other] @returns {LessonCard} */
@@ -41,22 +43,22 @@ const votes = { counts: [3, 1], points: [] };
 
 test("every lesson is in one chapter, in the order of all, the user's own last", () => {
   const cards = ["packet", "dark", "loop", "unheard-of", "goal"].map((name) => card(name));
-  const all = lessons.chapters([card("mine", { own: true }), ...cards]);
+  const all = chapters([card("mine", { own: true }), ...cards]);
   const names = all.map((chapter) => chapter.cards.map(({ name }) => name).join());
   assert.deepEqual(names, ["packet,dark", "loop,unheard-of", "goal", "mine"]);
-  assert.equal(lessons.chapters([card("unheard-of")]).length, 1);
-  assert.deepEqual(lessons.chapters([]), []);
+  assert.equal(chapters([card("unheard-of")]).length, 1);
+  assert.deepEqual(chapters([]), []);
 });
 
 test("the next lesson is the next one that can be begun", () => {
   const cards = [card("a"), card("b", { wrong: "no such world" }), card("c")];
-  const next = ["a", "c", "gone"].map((name) => lessons.nextAfter(cards, name)?.name);
+  const next = ["a", "c", "gone"].map((name) => nextAfter(cards, name)?.name);
   assert.deepEqual(next, ["c", undefined, undefined]);
 });
 
 test("a lesson says how long it is, and its number", () => {
-  assert.equal(lessons.cardFacts(card("a")), "A 4 · 10 s");
-  assert.equal(lessons.cardFacts(card("a", { minutes: 14.6, rounds: 3 })), "A 4 · 15 min · 3 rounds");
+  assert.equal(cardFacts(card("a")), "A 4 · 10 s");
+  assert.equal(cardFacts(card("a", { minutes: 14.6, rounds: 3 })), "A 4 · 15 min · 3 rounds");
   assert.equal(lessons.which(view(), card("a", { number: 7 })), "Lesson 7 · A 4");
   assert.equal(lessons.which(view({ rounds: 3, round: 2 }), card("a")), "Lesson 1 · A 4 · round 2 of 3");
   assert.equal(lessons.which(view(), card("a", { own: true })), "A 4");
@@ -147,9 +149,8 @@ test("a moment that is marked on both plates is listed once, in the order of tim
 });
 
 test("an address names a lesson, and nothing else; what is looked at has a name", () => {
-  assert.equal(lessons.linked("#lesson=two-doors"), "two-doors");
-  for (const other of ["", "#run=3", "#lesson=", "#lesson=A/B", "#lesson=a&b"])
-    assert.equal(lessons.linked(other), null);
+  assert.equal(linked("#lesson=two-doors"), "two-doors");
+  for (const other of ["", "#run=3", "#lesson=", "#lesson=A/B", "#lesson=a&b"]) assert.equal(linked(other), null);
   assert.deepEqual(
     ["truth", "pose"].map((place) => lessons.tabOf(place, ["Senses", "Truth"])),
     ["Truth", null],
@@ -158,12 +159,12 @@ test("an address names a lesson, and nothing else; what is looked at has a name"
 });
 
 test("a plan has room around its walls; a map is turned as on its plate, and back", () => {
-  const { left, bottom, width, height } = lessons.outline([segment("0 0, 10 0"), segment("10 0, 10 5")]);
+  const { left, bottom, width, height } = outline([segment("0 0, 10 0"), segment("10 0, 10 5")]);
   assert.ok(left < 0 && bottom < 0 && left + width > 10 && bottom + height > 5);
-  assert.ok(Number.isFinite(lessons.outline([]).width));
-  const [x, y] = lessons.turned([2, 1], Math.PI / 2);
+  assert.ok(Number.isFinite(outline([]).width));
+  const [x, y] = turned([2, 1], Math.PI / 2);
   assert.ok(Math.abs(x + 1) < 1e-9 && Math.abs(y - 2) < 1e-9);
-  const there = lessons.turned(lessons.turned([3, -4], 0.7), -0.7);
+  const there = turned(turned([3, -4], 0.7), -0.7);
   assert.ok(Math.hypot(there[0] - 3, there[1] + 4) < 1e-9);
 });
 

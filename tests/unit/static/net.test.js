@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { unframed } from "../../../web/static/model/frames.js";
+import { unframed } from "../../../web/static/net/connection.js";
 import { get } from "../../../web/static/net/post.js";
 
 /**

@@ -2,13 +2,15 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { linkIn, momentWords, nameOfMoment, situationWords } from "../../../web/static/model/moments.js";
-import * as draw from "../../../web/static/model/pixels.js";
-import { plotSvg, ticksIn } from "../../../web/static/model/plot_svg.js";
+import { linkIn, momentWords, situationWords } from "../../../web/static/share/share.js";
+import { nameOfMoment } from "../../../web/static/share/keeping.js";
+import * as draw from "../../../web/static/panel/parts.js";
+import { plotSvg, ticksIn } from "../../../web/static/share/pictures.js";
 import { chance } from "./made.js";
+import { fromAbove, STRIP, viewsASquare, viewStrip } from "../../../web/static/panel/senses.js";
 
-/** @typedef {import("../../../web/static/model/pixels.js").Pixels} Pixels */
-/** @typedef {import("../../../web/static/model/pixels.js").Rgb} Rgb */
+/** @typedef {import("../../../web/static/panel/parts.js").Pixels} Pixels */
+/** @typedef {import("../../../web/static/panel/parts.js").Rgb} Rgb */
 
 /** @param {Pixels} pixels @param {number} x @param {number} y */
 const at = ({ width, rgba }, x, y) => [...rgba.slice(4 * (y * width + x), 4 * (y * width + x) + 4)];
@@ -23,14 +25,14 @@ test("colours are read as they are written in the style; a picture's pixels are 
 
 test("every view has a square of the strip, however many there are", () => {
   for (const views of [0, 1, 203, 204, 205, 2040, 20_000])
-    assert.ok(Math.floor(Math.max(views - 1, 0) / draw.viewsASquare(views)) < draw.STRIP.rows * draw.STRIP.columns);
+    assert.ok(Math.floor(Math.max(views - 1, 0) / viewsASquare(views)) < STRIP.rows * STRIP.columns);
 });
 
 test("the active view is lit, those of late fade, the rest is quiet", () => {
   /** @type {{ quiet: Rgb, lit: Rgb, active: Rgb, ground: Rgb }} */
   const colours = { quiet: [9, 9, 9], lit: [200, 100, 0], active: [1, 2, 3], ground: [0, 0, 0] };
-  const strip = draw.viewStrip({ views: 100, active: 40, recent: [3, 7, 40] }, colours);
-  const { columns, square } = draw.STRIP;
+  const strip = viewStrip({ views: 100, active: 40, recent: [3, 7, 40] }, colours);
+  const { columns, square } = STRIP;
   const middle = (/** @type {number} */ view) =>
     at(strip, (view % columns) * square + 2, Math.floor(view / columns) * square + 2);
   assert.deepEqual(middle(40), [1, 2, 3, 255]);
@@ -42,7 +44,7 @@ test("the active view is lit, those of late fade, the rest is quiet", () => {
 
 test("activity from above: the strongest column is opaque, the front row is at the bottom, packets mix by weight", () => {
   const colours = ["#c80000", "#0000c8"].map(draw.rgb);
-  const pixels = draw.fromAbove([2, 3], [1, 1, 5], [0, 1, 7], [3, 1, 1], colours, [9, 9, 9]);
+  const pixels = fromAbove([2, 3], [1, 1, 5], [0, 1, 7], [3, 1, 1], colours, [9, 9, 9]);
   assert.deepEqual(at(pixels, 1, 1), [150, 0, 50, 255]); // place 1 is in the front row
   assert.deepEqual(at(pixels, 2, 0).slice(0, 3), [0, 0, 200]); // a higher rank has the last colour
   assert.ok(at(pixels, 2, 0)[3] < 255);

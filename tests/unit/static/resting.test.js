@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { restBetweenFrames } from "../../../web/static/viewer/resting.js";
+import { restBetweenFrames } from "../../../web/static/viewer/frames.js";
 
 const FRAME_MS = 16;
 

@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { Seeker } from "../../../web/static/timeline/seeker.js";
+import { Seeker } from "../../../web/static/timeline/tools.js";
 
 /** A seeker whose connection answers when it is told to, and a time that is what the timers say.
  * @param {import("node:test").TestContext} context */

@@ -2,9 +2,17 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { endNear, thingNear } from "../../../web/static/model/finding.js";
-import { away, corners, tip } from "../../../web/static/model/geometry.js";
-import { THINGS, kindOf, moved, newName, read, written } from "../../../web/static/model/things.js";
+import {
+  endNear,
+  kindOf,
+  moved,
+  newName,
+  read,
+  thingNear,
+  THINGS,
+  written,
+} from "../../../web/static/editor/things.js";
+import { away, corners, tip } from "../../../web/static/editor/geometry.js";
 import { LIMITS } from "../../../web/static/shared.js";
 import { path, wall } from "./made.js";
 

@@ -2,10 +2,12 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { clock, tickTimes, tickTimesIn } from "../../../web/static/model/clock.js";
-import { kinds, markOf, nameOf, weightOf } from "../../../web/static/model/event_kinds.js";
-import { frameOf, lying } from "../../../web/static/model/side_maps.js";
-import * as line from "../../../web/static/model/timeline.js";
+import { clock, fine } from "../../../web/static/ui/words.js";
+import { tickTimes, tickTimesIn } from "../../../web/static/timeline/line.js";
+import { counted, kinds, markOf, nameOf, weightOf, words } from "../../../web/static/timeline/events.js";
+import { frameOf, lying, parted } from "../../../web/static/timeline/comparison.js";
+import * as line from "../../../web/static/timeline/line.js";
+import { nextEvent } from "../../../web/static/timeline/tools.js";
 import { EVENT_KINDS } from "../../../web/static/shared.js";
 import { chance, path } from "./made.js";
 
@@ -19,7 +21,7 @@ const x = (/** @type {number} */ time_s) => 6 + 2 * time_s;
 
 test("a clock has hours only when there are some, and a moment is told to the tenth", () => {
   assert.deepEqual([0, 59.9, 61, 3599, 3661].map(clock), ["0:00", "0:59", "1:01", "59:59", "1:01:01"]);
-  assert.deepEqual([0, 74, 61.3, 3661.9].map(line.fine), ["0:00.0", "1:14.0", "1:01.3", "1:01:01.9"]);
+  assert.deepEqual([0, 74, 61.3, 3661.9].map(fine), ["0:00.0", "1:14.0", "1:01.3", "1:01:01.9"]);
 });
 
 test("times beneath are round, begin at nought, and are neither few nor many", () => {
@@ -70,13 +72,13 @@ test("names are within the timeline and none lies over another; what counts most
 });
 
 test("an event is told with its time and its name; what repeats is one line that counts, wherever it came from", () => {
-  assert.equal(line.words({ ...event(1, 61, "unreachable"), text: "to 5" }), "1:01 no way: to 5");
+  assert.equal(words({ ...event(1, 61, "unreachable"), text: "to 5" }), "1:01 no way: to 5");
   const several = (/** @type {number} */ k) => ({ ...event(k, 10 * k, "place"), line: "several", count: k });
   const news = [several(1), event(2, 15, "snap"), several(2), event(3, 21, "snap"), { ...several(3), since_s: 10 }];
   for (let k = 0; k <= news.length; k++) {
-    const told = line.counted([...line.counted(news.slice(0, k)), ...news.slice(k)]); // in two messages of any length
+    const told = counted([...counted(news.slice(0, k)), ...news.slice(k)]); // in two messages of any length
     assert.equal(told.map(({ number }) => number).join(), "2,3,3");
-    assert.equal(line.words(told[2]), "0:30 places: x, 3 times since 0:10");
+    assert.equal(words(told[2]), "0:30 places: x, 3 times since 0:10");
   }
 });
 
@@ -103,7 +105,7 @@ test("times beneath a part are within it and round", () => {
 
 test("the next event and the one before", () => {
   const events = [event(1, 5, "snap"), event(2, 6, "office"), event(3, 9, "lost")];
-  const next = (/** @type {number} */ from, /** @type {1 | -1} */ way) => line.nextEvent(events, from, way);
+  const next = (/** @type {number} */ from, /** @type {1 | -1} */ way) => nextEvent(events, from, way);
   assert.deepEqual([next(6, 1), next(6, -1), next(9, 1)], [9, 5, undefined]);
 });
 
@@ -121,7 +123,7 @@ test("branches part where the first of them leaves the other", () => {
     [3, 4, 20],
     [4, 1, 20],
   ])
-    assert.equal(line.parted(branches, one, other), time_s);
+    assert.equal(parted(branches, one, other), time_s);
 });
 
 test("two maps lie in one frame, turned as on the stage", () => {

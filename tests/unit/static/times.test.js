@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { BOTTOM, DaylightCurve, HEIGHT, LEFT, RIGHT, TOP, WIDTH } from "../../../web/static/model/daylight_curve.js";
+import { BOTTOM, DaylightCurve, HEIGHT, LEFT, RIGHT, TOP, WIDTH } from "../../../web/static/editor/daylight.js";
 import {
   ACTIONS,
   firstAction,
@@ -11,7 +11,7 @@ import {
   line,
   seconds,
   time,
-} from "../../../web/static/model/script.js";
+} from "../../../web/static/editor/times.js";
 import { SCRIPT_ACTIONS } from "../../../web/static/shared.js";
 import { path } from "./made.js";
 

@@ -2,8 +2,8 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { THINGS } from "../../../web/static/model/things.js";
-import { TOOLS, hintOf, toolOf } from "../../../web/static/model/tools.js";
+import { THINGS } from "../../../web/static/editor/things.js";
+import { hintOf, toolOf, TOOLS } from "../../../web/static/editor/tools.js";
 import { OFFICE_LISTS } from "../../../web/static/shared.js";
 import { path, wall } from "./made.js";
 

@@ -2,9 +2,9 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { away } from "../../../web/static/model/geometry.js";
-import { pinched } from "../../../web/static/model/pinch.js";
-import { ViewBox } from "../../../web/static/model/view_box.js";
+import { away } from "../../../web/static/editor/geometry.js";
+import { pinched } from "../../../web/static/viewer/fingers.js";
+import { ViewBox } from "../../../web/static/editor/svg_view.js";
 import { chance, path, points, segment } from "./made.js";
 
 const RING = path("-2 1, 8 1, 8 6, -2 6");

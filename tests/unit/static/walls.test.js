@@ -2,8 +2,8 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { away, length } from "../../../web/static/model/geometry.js";
-import { fitted, gapSteps, looksOf, pulledEnds } from "../../../web/static/model/walls.js";
+import { away, length } from "../../../web/static/editor/geometry.js";
+import { fitted, gapSteps, looksOf, pulledEnds } from "../../../web/static/editor/walls.js";
 import { chance, segment, wall } from "./made.js";
 
 const board = { bottom: 1, top: 2, texture: /** @type {const} */ ("board"), colour: "#000000" };

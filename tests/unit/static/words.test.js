@@ -2,15 +2,17 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { FirstMinute } from "../../../web/static/model/first_minute.js";
-import { choices, whereabouts } from "../../../web/static/model/places.js";
-import * as said from "../../../web/static/model/sentences.js";
-import { Speech } from "../../../web/static/model/speech.js";
+import { FirstMinute } from "../../../web/static/header/help.js";
+import { choices, Speech, whereabouts } from "../../../web/static/ui/access.js";
+import * as said from "../../../web/static/ui/words.js";
+import { plainly } from "../../../web/static/editor/world_client.js";
+import { freeName } from "../../../web/static/worlds/own_worlds.js";
+import { experiences, keptWords } from "../../../web/static/brains/kept_brain.js";
 
 test("a sentence begins with a capital letter and has one full stop; counts and sizes are in words", () => {
   assert.deepEqual(["x is wrong", "Why?", "so."].map(said.sentence), ["X is wrong.", "Why?", "So."]);
   assert.deepEqual(["plan.png: too large", "Stop!"].map(said.ended), ["plan.png: too large.", "Stop!"]);
-  assert.deepEqual([0, 1, 2345].map(said.experiences), ["0 experiences", "1 experience", "2,345 experiences"]);
+  assert.deepEqual([0, 1, 2345].map(experiences), ["0 experiences", "1 experience", "2,345 experiences"]);
   assert.equal(said.megabytes(16_040_000), "16.0 MB");
 });
 
@@ -20,18 +22,18 @@ test("a refusal is told without the number that a thing has in a file", () => {
     ["walls[17] (north wall) is too long", "walls[17] (north wall) is too long"],
     ["the office is another edition", "the office is another edition"],
   ])
-    assert.equal(said.plainly(told), plain);
+    assert.equal(plainly(told), plain);
 });
 
 test("a new world has the first name that nobody has", () => {
-  assert.equal(said.freeName({ yours: {}, ours: { office: "Office" } }), "my-world");
+  assert.equal(freeName({ yours: {}, ours: { office: "Office" } }), "my-world");
   const yours = { "my-world": "", "my-world-3": "" };
-  assert.equal(said.freeName({ yours, ours: { "my-world-2": "" } }), "my-world-4");
+  assert.equal(freeName({ yours, ours: { "my-world-2": "" } }), "my-world-4");
 });
 
 test("what was kept today is told by the hour, what is older by the day too", () => {
   const kept = { world: "office", title: "Office", experiences: 1, time_s: 600, kept_at: 1_700_000_000, run: null };
-  const words = (/** @type {number} */ hours) => said.keptWords(kept, kept.kept_at + 3600 * hours);
+  const words = (/** @type {number} */ hours) => keptWords(kept, kept.kept_at + 3600 * hours);
   assert.match(words(0.1), /^Office, 10 simulated minutes, 1 experience, kept \d\d:\d\d$/);
   assert.match(words(13), /kept 1[45] Nov 2023, \d\d:\d\d$/);
 });

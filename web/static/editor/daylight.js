@@ -1,13 +1,43 @@
 // The daylight against time: a small picture of the curve, and its points in fields.
 
-import { $, field, find, within } from "../elements/dom.js";
-import { keepingPlace, levelInput, make, mark, removeButton, timeInput } from "../elements/elements.js";
-import { svg } from "../elements/icons.js";
-import { BOTTOM, DaylightCurve, HEIGHT, LEFT, RIGHT, TOP, WIDTH } from "../model/daylight_curve.js";
-import { NO_TIME, isLevel, seconds, time } from "../model/script.js";
+import { $, field, find, make, removeButton, svg, within } from "../ui/elements.js";
+import { isLevel, keepingPlace, levelInput, mark, NO_LEVEL, NO_TIME, seconds, time, timeInput } from "./times.js";
 
-export const NO_LEVEL = (/** @type {string} */ text) =>
-  `“${text}” is no level; write a number from 0, which is dark, to 3. 1 is as painted.`;
+export const [WIDTH, HEIGHT, LEFT, RIGHT, TOP, BOTTOM] = [316, 112, 26, 8, 8, 20]; // of the picture, and margins around its axes
+const LEAST_S = 60;
+
+/** The daylight against time as a curve in a small picture. */
+export class DaylightCurve {
+  /** @param {DaylightItem | null} day */
+  constructor(day) {
+    this.points = day?.points ?? [];
+    this.repeat_s = day?.repeat_s ?? 0;
+    this.span_s = this.repeat_s || Math.max(LEAST_S, (this.points.at(-1)?.[0] ?? 0) * 1.25);
+    this.most = Math.max(1.2, ...this.points.map(([, level]) => level * 1.1));
+  }
+
+  /** @param {number} at_s */
+  x(at_s) {
+    return LEFT + ((WIDTH - LEFT - RIGHT) * Math.min(at_s, this.span_s)) / this.span_s;
+  }
+
+  /** @param {number} level */
+  y(level) {
+    return HEIGHT - BOTTOM - ((HEIGHT - TOP - BOTTOM) * Math.min(level, this.most)) / this.most;
+  }
+
+  /** Where a moment is in the picture; if the curve repeats, within its period. @param {number} now_s */
+  now(now_s) {
+    return this.x(this.repeat_s ? now_s % this.repeat_s : now_s);
+  }
+
+  /** The curve as a path: level before the first point and after the last. */
+  get path() {
+    const [first, last] = [this.points[0]?.[1] ?? 1, this.points.at(-1)?.[1] ?? 1];
+    const curve = [[0, first], ...this.points, [this.span_s, last]].filter(([at_s]) => at_s <= this.span_s);
+    return `M${curve.map(([at_s, level]) => `${this.x(at_s).toFixed(1)} ${this.y(level).toFixed(1)}`).join("L")}`;
+  }
+}
 
 export class DaylightForm {
   /** @param {import("./world_client.js").WorldClient} office @param {Tell} tell */

@@ -1,18 +1,16 @@
 // The world editor: a plan from above, tools that draw on it, undo and redo. Edits go to the engine as commands. The engine's
 // world is the only one, and it is read again after each change.
 
-import { $, within } from "../elements/dom.js";
-import { Fields } from "./fields.js";
-import { closeMenu } from "../header/menus.js";
-import { WorldClient } from "./world_client.js";
+import { $, within } from "../ui/elements.js";
+import { Fields, kindOf } from "./things.js";
+import { closeMenu } from "../header/header.js";
+import { SaveDialog, WorldClient } from "./world_client.js";
 import { Plan } from "./plan.js";
 import { Pointer } from "./pointer.js";
-import { SaveDialog } from "./save_dialog.js";
-import { nameOfKey } from "../model/key_meanings.js";
-import { away } from "../model/geometry.js";
-import { followingLines } from "../model/script.js";
-import { kindOf } from "../model/things.js";
-import { TOOLS, hintOf } from "../model/tools.js";
+import { nameOfKey } from "../ui/keys.js";
+import { away } from "./geometry.js";
+import { followingLines } from "./times.js";
+import { hintOf, TOOLS } from "./tools.js";
 import { TimePanel } from "./time_panel.js";
 
 export class Editor {

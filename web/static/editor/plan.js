@@ -1,11 +1,10 @@
 // The office from above: the things of a world, what moves in it, the robot, and what is being drawn.
 
-import { svg } from "../elements/icons.js";
+import { svg } from "../ui/elements.js";
 import { SvgView } from "./svg_view.js";
 import { Walls } from "./walls.js";
-import { away, corners, hinge, point, tip } from "../model/geometry.js";
-import { endNear, thingNear } from "../model/finding.js";
-import { kindOf } from "../model/things.js";
+import { away, corners, hinge, point, tip } from "./geometry.js";
+import { endNear, kindOf, thingNear } from "./things.js";
 
 const JOIN_PX = 9; // a click within this distance of a wall's end joins it
 const NEAR_PX = 12; // a click within this distance selects a thing

@@ -1,9 +1,9 @@
 // What the pointer and the keys do on the editor's plan.
 
-import { $ } from "../elements/dom.js";
-import { at, away } from "../model/geometry.js";
-import { THINGS, moved } from "../model/things.js";
-import { TOOLS, toolOf } from "../model/tools.js";
+import { $ } from "../ui/elements.js";
+import { at, away } from "./geometry.js";
+import { moved, THINGS } from "./things.js";
+import { toolOf, TOOLS } from "./tools.js";
 
 const DRAG_PX = 6;
 /** @type {Record<string, Point>} */

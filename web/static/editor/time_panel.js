@@ -1,12 +1,25 @@
 // What happens when: the lines of the world's script, sorted by time, to add, change and delete, and the daylight below them.
 
-import { $, field, find, within } from "../elements/dom.js";
-import { NO_LEVEL, DaylightForm } from "./daylight.js";
-import { keepingPlace, labelled, levelInput, make, mark, removeButton, timeInput } from "../elements/elements.js";
-import { ACTIONS, NO_TIME, firstAction, isLevel, line, namesOf, seconds, time } from "../model/script.js";
+import { $, field, find, labelled, make, removeButton, within } from "../ui/elements.js";
+import {
+  ACTIONS,
+  firstAction,
+  isLevel,
+  keepingPlace,
+  levelInput,
+  line,
+  mark,
+  namesOf,
+  NO_LEVEL,
+  NO_TIME,
+  seconds,
+  time,
+  timeInput,
+} from "./times.js";
+import { DaylightForm } from "./daylight.js";
 import { SCRIPT_ACTIONS } from "../shared.js";
 
-/** @typedef {import("../model/script.js").Action} Action */
+/** @typedef {import("./times.js").Action} Action */
 /** What the form for another line holds. @typedef {{ at_s: number, do: Action, text?: string, name?: string, level?: number }} Draft */
 
 export class TimePanel {

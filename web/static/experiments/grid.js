@@ -1,9 +1,59 @@
 // What was run of one experiment: a grid of cells, and the trials of the cell that is chosen as dots.
 
-import { $ } from "../elements/dom.js";
-import { make } from "../elements/elements.js";
-import { dotFace, dotWords, engineWords, firstEngine, lookOf, rowsOf, settingWords } from "../model/experiments.js";
-import { ended } from "../model/sentences.js";
+import { clock, ended } from "../ui/words.js";
+import { $, make } from "../ui/elements.js";
+
+/** @type {Record<EngineName, string>} */
+const ENGINES = { ours: "our rules", paper: "the paper's rules" };
+const BEFORE_S = 10; // a trial plays from so long before its moment
+
+/** @param {EngineName} engine */
+export const engineWords = (engine) => ENGINES[engine];
+
+/** The engine that is chosen at first. @param {Card} card */
+export const firstEngine = ({ engines }) => (engines.includes("ours") ? "ours" : engines[0]);
+
+/**
+ * The cells of one engine as rows: the first axis goes across, the second one down. Of further axes only the levels in
+ * `fixed` are shown.
+ * @param {Card} card
+ * @param {Results} results
+ * @param {EngineName} engine
+ * @param {string[]} fixed
+ */
+export function rowsOf({ axes }, { cells }, engine, fixed) {
+  const [across, down] = axes;
+  /** @param {string[]} levels */
+  const at = (levels) =>
+    cells.find((cell) => cell.engine === engine && levels.every((level, k) => cell.levels[k] === level));
+  const labels = down ? down.levels : [""];
+  return labels.map((label) => ({
+    label,
+    cells: (across ? across.levels : [""]).map((level) =>
+      at([...(across ? [level] : []), ...(down ? [label] : []), ...fixed]),
+    ),
+  }));
+}
+
+/** How a trial went: its dot's look. @param {Dot} dot @returns {"all" | "some" | "none" | "plain"} */
+export function lookOf({ good, of }) {
+  if (good === null || of === null || of === 0) return "plain";
+  if (good >= of) return "all";
+  return good > 0 ? "some" : "none";
+}
+
+/** What stands on a dot. @param {Dot} dot */
+export const dotFace = ({ good, of, words }) => (of ? `${good}/${of}` : words);
+
+/** @param {Dot} dot @param {Results} results */
+export function dotWords(dot, { score, is_rate }) {
+  const how = is_rate ? `${dot.words} ${score}` : `${score} ${dot.words}`;
+  const from = clock(Math.max(0, dot.moment_s - BEFORE_S));
+  return `Seed ${dot.seed}: ${how}. Decided at ${clock(dot.moment_s)}: ${dot.moment}. Plays from ${from}.`;
+}
+
+/** @param {{ levels: string[] }} cell */
+export const settingWords = ({ levels }) => levels.join(", ") || "as it is";
 
 const PLAYS = " A dot plays its trial from the moment that decided it.";
 

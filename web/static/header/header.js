@@ -1,10 +1,24 @@
-// The header: what the session is doing, and the controls for time, world and goal.
+// The header: what the session is doing, the controls for time, world and goal, its menus, and light or dark.
 
-import { $, find } from "../elements/dom.js";
-import { setIcon } from "../elements/icons.js";
-import { clock } from "../model/clock.js";
-import { sentence } from "../model/sentences.js";
-import { toast } from "../elements/toasts.js";
+import { $, find, keep, kept, setIcon } from "../ui/elements.js";
+import { clock, sentence, toast } from "../ui/words.js";
+import { THEMES } from "../shared.js";
+
+/** Those that drop down. @returns {HTMLDetailsElement[]} */
+const menus = () => [...document.querySelectorAll(/** @type {"details"} */ ("details.menu"))];
+
+/** @param {HTMLDetailsElement} menu */
+export function closeMenu(menu) {
+  menu.open = false;
+  find(menu, "summary").focus();
+}
+
+// True when one was open.
+export function closeOpenMenu() {
+  const menu = menus().find(({ open }) => open);
+  if (menu) closeMenu(menu);
+  return menu !== undefined;
+}
 
 export class Header {
   constructor() {
@@ -13,6 +27,9 @@ export class Header {
     this.fault = null;
     /** @type {HTMLElement | null} */
     this.faultToast = null;
+    window.addEventListener("click", ({ target }) => {
+      for (const menu of menus()) if (!menu.contains(/** @type {Node} */ (target))) menu.open = false;
+    });
   }
 
   /** @param {State} state @param {PageFields} page */
@@ -105,4 +122,38 @@ export class Header {
 function choose(select, value) {
   if (![...select.options].some((option) => option.value === value)) select.add(new Option(`× ${value}`, value));
   select.value = value;
+}
+
+/** Light or dark. The choice is each viewer's own: the server shows this page the plates of its theme. */
+export class Theming {
+  /** @param {import("../net/connection.js").Connection} link */
+  constructor(link) {
+    this.link = link;
+    this.show(firstTheme());
+  }
+
+  /** @returns {Theme} */
+  get name() {
+    return document.documentElement.dataset.theme === "light" ? "light" : "dark";
+  }
+
+  /** @param {Theme} name */
+  show(name) {
+    document.documentElement.dataset.theme = name;
+    setIcon($("theme"), name === "dark" ? "sun" : "moon");
+    $("theme").setAttribute("aria-label", name === "dark" ? "Light colours" : "Dark colours");
+    this.link.tell({ type: "theme", name });
+  }
+
+  toggle() {
+    const other = this.name === "dark" ? "light" : "dark";
+    this.show(other);
+    keep("theme", other);
+  }
+}
+
+/** The theme chosen earlier in this browser, else the system's. @returns {Theme} */
+function firstTheme() {
+  const preferred = window.matchMedia("(prefers-color-scheme: light)").matches ? "light" : "dark";
+  return THEMES.find((name) => name === kept("theme")) ?? preferred;
 }

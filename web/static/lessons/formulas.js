@@ -1,7 +1,29 @@
-// Formulas as in the papers. A symbol that is a parameter leads to it in Tune.
+// Formulas as in the papers, which the server has typeset. Only elements of MathML are taken over, and of those no links and no
+// scripts. A symbol that is a parameter leads to it in Tune.
 
-import { make } from "../elements/elements.js";
-import { mathOf } from "./mathml.js";
+import { $, make } from "../ui/elements.js";
+
+const MATHML = "http://www.w3.org/1998/Math/MathML";
+
+/** @param {string} text @returns {Element} */
+function mathOf(text) {
+  const parsed = new DOMParser().parseFromString(text, "application/xml").documentElement;
+  return copied(parsed) ?? document.createElementNS(MATHML, "math");
+}
+
+/** @param {Element} from @returns {Element | null} */
+function copied(from) {
+  if (from.namespaceURI !== MATHML || !/^(math|m[a-z]+)$/.test(from.localName)) return null;
+  const made = document.createElementNS(MATHML, from.localName);
+  for (const { name, value } of from.attributes)
+    if (!name.startsWith("on") && !name.includes(":") && name !== "href" && name !== "style" && name !== "xmlns")
+      made.setAttribute(name, value);
+  for (const child of from.childNodes) {
+    if (child.nodeType === Node.TEXT_NODE) made.append(child.textContent ?? "");
+    else if (child instanceof Element) made.append(copied(child) ?? "");
+  }
+  return made;
+}
 
 /**
  * @param {FormulaText} formula
@@ -37,4 +59,13 @@ function symbolRow({ mathml, means, parameter, value }, tune, valueNow) {
   for (const kind of /** @type {const} */ (["pointerenter", "focus"])) button.addEventListener(kind, look);
   button.addEventListener("click", () => tune(parameter));
   return make("li", {}, button);
+}
+
+// A formula that is wider than the card is set smaller; what is wider still can be scrolled.
+export function fitFormulas() {
+  for (const math of /** @type {NodeListOf<HTMLElement>} */ ($("lesson-formulas").querySelectorAll(".math"))) {
+    math.style.fontSize = "";
+    const share = math.clientWidth / math.scrollWidth;
+    if (share < 1) math.style.fontSize = `${Math.max(0.74, 1.06 * share).toFixed(2)}em`;
+  }
 }

@@ -1,28 +1,23 @@
-// The lesson's card beside the stage: what this is, the question, what happens, and what came of it. The server says which state
-// the lesson is in; all pages show the same.
+// The lesson's card beside the stage: what this is, the question, where the class votes, what happens, and what came of it. The server
+// says which state the lesson is in; all pages show the same.
 
-import { $ } from "../elements/dom.js";
-import { make } from "../elements/elements.js";
-import { icon } from "../elements/icons.js";
+import { $, find, icon, make, renew, say } from "../ui/elements.js";
 import {
   doingWords,
   isBroken,
+  isOpen,
   isWatched,
-  linked,
   moments,
-  nextAfter,
   placeWords,
   showWords,
   tabOf,
   verdict,
   which,
-} from "../model/lessons.js";
+} from "./words.js";
+import { linked, nextAfter, setDone } from "./list.js";
 import { phone } from "../viewer/viewer.js";
-import { renew, say } from "../panel/parts.js";
 import { TABS, VIEWS } from "../shared.js";
-import { formulaBox } from "./formulas.js";
-import { setDone } from "./kept.js";
-import { Invitation } from "./invitation.js";
+import { fitFormulas, formulaBox } from "./formulas.js";
 import { Question } from "./question.js";
 
 export class Lesson {
@@ -91,7 +86,7 @@ export class Lesson {
     else if (lesson.state === "showing") this.look();
     if (lesson.state === "compared") setDone(lesson.name);
     if (before && lesson.state !== before.state) $("lesson-body").scrollTop = 0;
-    if (phone.matches) this.fold(lesson.state === "showing");
+    if (phone()) this.fold(lesson.state === "showing");
   }
 
   /** All texts of the lesson, and the focus into its card. @param {string} name */
@@ -262,11 +257,44 @@ export class Lesson {
   }
 }
 
-// A formula that is wider than the card is set smaller; what is wider still can be scrolled.
-function fitFormulas() {
-  for (const math of /** @type {NodeListOf<HTMLElement>} */ ($("lesson-formulas").querySelectorAll(".math"))) {
-    math.style.fontSize = "";
-    const share = math.clientWidth / math.scrollWidth;
-    if (share < 1) math.style.fontSize = `${Math.max(0.74, 1.06 * share).toFixed(2)}em`;
+/** Where the class votes: large and with a QR code for whoever looks at a screen from afar, else a line below the question. */
+class Invitation {
+  constructor() {
+    this.box = $("lesson-class");
+    this.hint = make("p", { className: "second vote-link" });
+    this.there = this.open = false; // a class can reach this program; and its votes count now
+  }
+
+  /** Asks where the class votes. */
+  async look() {
+    /** @type {{ vote: string | null }} */
+    const { vote } = await fetch("/api/class").then(
+      (answer) => answer.json(),
+      () => ({ vote: null }),
+    );
+    this.there = vote !== null;
+    const here = make("a", { href: vote ?? "/?vote", target: "_blank", textContent: vote ?? "Let the class vote" });
+    if (vote) this.hint.replaceChildren("The class votes at ", here, ".");
+    else this.hint.replaceChildren(here, " on this machine; started with ", command(), ", on their phones.");
+    if (!vote) return;
+    const image = /** @type {HTMLImageElement} */ (find(this.box, "img"));
+    if (!image.src) image.src = "/api/class.svg";
+    const link = /** @type {HTMLAnchorElement} */ (find(this.box, "a"));
+    link.href = vote;
+    const [, name, port] = /^http:\/\/(.*?)(:\d+)?\/$/.exec(vote) ?? ["", vote, ""];
+    link.replaceChildren(name, make("wbr"), port ?? "");
+    this.draw();
+  }
+
+  /** @param {LessonView} lesson */
+  show(lesson) {
+    this.open = isOpen(lesson);
+    this.draw();
+  }
+
+  draw() {
+    this.box.hidden = !this.there || !this.open;
   }
 }
+
+const command = () => make("code", { textContent: "ratslam run --class" });

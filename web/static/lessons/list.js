@@ -1,12 +1,49 @@
-// All lessons in a dialog, chapter by chapter. A click begins one.
+// All lessons in a dialog, chapter by chapter, and which of them have been gone through in this browser. A click begins one.
 
-import { $, find } from "../elements/dom.js";
-import { make } from "../elements/elements.js";
-import { icon } from "../elements/icons.js";
-import { cardFacts, chapters } from "../model/lessons.js";
+import { $, find, icon, keep, kept, make } from "../ui/elements.js";
 import { get, reasons } from "../net/post.js";
-import { sentence } from "../model/sentences.js";
-import { done } from "./kept.js";
+import { sentence } from "../ui/words.js";
+
+/** Each begins with the lesson named here; those behind it belong to it, too. */
+const GROUPS = new Map([
+  ["packet", "The packet: path integration"],
+  ["loop", "The map: loops, snaps, places"],
+  ["kidnapped", "Lost and found"],
+  ["goal", "Going somewhere"],
+  ["small", "Limits, and what we added"],
+]);
+
+/**
+ * Lessons in their order, by chapter. Those of the user's own come last.
+ * @param {LessonCard[]} cards
+ */
+export function chapters(cards) {
+  /** @type {{ title: string, cards: LessonCard[] }[]} */
+  const all = [];
+  for (const card of cards.filter(({ own }) => !own)) {
+    const title = GROUPS.get(card.name);
+    if (title || !all.length) all.push({ title: title ?? "Lessons", cards: [] });
+    all[all.length - 1].cards.push(card);
+  }
+  const own = cards.filter((card) => card.own);
+  return own.length ? [...all, { title: "Your own", cards: own }] : all;
+}
+
+/** The lesson after this one, in their order; null after the last. @param {LessonCard[]} cards @param {string} name */
+export function nextAfter(cards, name) {
+  const good = cards.filter(({ wrong }) => wrong === null);
+  const at = good.findIndex((card) => card.name === name);
+  return at < 0 ? null : (good[at + 1] ?? null);
+}
+
+/** @param {LessonCard} card */
+export function cardFacts({ paper, minutes, rounds }) {
+  const long = minutes < 1.5 ? `${Math.max(5, 5 * Math.round(minutes * 12))} s` : `${Math.round(minutes)} min`;
+  return `${paper} · ${long}${rounds > 1 ? ` · ${rounds} rounds` : ""}`;
+}
+
+/** The name of a lesson in an address, `#lesson=NAME`; null without one. @param {string} hash */
+export const linked = (hash) => /^#lesson=([a-z0-9-]{1,40})$/.exec(hash)?.[1] ?? null;
 
 export class LessonList {
   /**
@@ -81,4 +118,21 @@ export class LessonList {
     $("lessons-wrong").hidden = !words;
     $("lessons-wrong").textContent = words && sentence(words);
   }
+}
+
+const DONE = "lessons done";
+
+/** @returns {string[]} */
+function done() {
+  try {
+    const names = JSON.parse(kept(DONE) ?? "[]");
+    return Array.isArray(names) ? names.map(String) : [];
+  } catch {
+    return []; // it is no list of ours
+  }
+}
+
+/** @param {string} name */
+export function setDone(name) {
+  keep(DONE, JSON.stringify([...new Set([...done(), name])]));
 }

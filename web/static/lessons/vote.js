@@ -1,10 +1,9 @@
 // The question alone, for a class: each browser has one vote, which can be changed until it is shown. It asks once a second, so
 // that many phones cost little.
 
-import { voteWords } from "../model/vote.js";
+import { voteWords } from "./words.js";
 import { reasons } from "../net/post.js";
-import { say } from "../panel/parts.js";
-import { voter } from "./kept.js";
+import { keep, kept, say } from "../ui/elements.js";
 import { Question } from "./question.js";
 
 /** @typedef {import("./question.js").Said} Said */
@@ -95,4 +94,12 @@ function draw() {
         text?.predict ?? { question: "", options: [], draw: null, plate: "office" },
       ),
   );
+}
+
+/** A text that is this browser's own. Each voter counts once. */
+function voter() {
+  const name = [...crypto.getRandomValues(new Uint8Array(12))].map((byte) => byte.toString(16)).join("-");
+  const own = kept("voter") ?? name;
+  keep("voter", own);
+  return own;
 }

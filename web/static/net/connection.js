@@ -1,7 +1,88 @@
-// The page's websocket: it reconnects by itself, hands out what arrives, sends commands and matches their answers.
+// The page's websocket: it reconnects by itself, hands out what arrives, sends commands and matches their answers. A page that only
+// looks on, `/?watch`, for a second screen, shows what the main page shows and steers nothing; what steers is hidden or disabled there,
+// and refused by the server.
 
-import { unframed } from "../model/frames.js";
-import { isLook, looksOn } from "../model/watching.js";
+import { LOOKS } from "../shared.js";
+import { $ } from "../ui/elements.js";
+
+/** Whether a message concerns the page alone. @param {string} kind */
+export const isLook = (kind) => /** @type {readonly string[]} */ (LOOKS).includes(kind);
+
+/** @type {ReadonlySet<import("../ui/keys.js").Act>} */
+export const WATCHER_KEYS = new Set([
+  "view1",
+  "view2",
+  "view3",
+  "view4",
+  "follow",
+  "panel",
+  "theme",
+  "present",
+  "escape",
+]);
+
+const WATCHER = "watch-";
+
+/** A page's own id, which nobody can guess. The server knows by it that a page only looks on. @param {boolean} watching */
+export function newId(watching) {
+  const bytes = [...crypto.getRandomValues(new Uint8Array(16))].map((byte) => byte.toString(16).padStart(2, "0"));
+  return (watching ? WATCHER : "") + bytes.join("");
+}
+
+/** @param {string} page */
+export const looksOn = (page) => page.startsWith(WATCHER);
+
+/** Makes this page one that only looks on. @param {string} page its id */
+export function onlyLook(page) {
+  document.title = "RatSLAM, to watch";
+  $("world").disabled = true;
+  $("timeline").setAttribute("aria-readonly", "true");
+  takeNoFiles(window);
+  const plain = window.fetch.bind(window);
+  window.fetch = (what, how = {}) => plain(what, { ...how, headers: { ...how.headers, "X-Page": page } });
+}
+
+/** What is dropped here is neither opened nor shown instead of the page. @param {Window} place */
+export function takeNoFiles(place) {
+  for (const kind of /** @type {const} */ (["dragenter", "dragover", "drop"]))
+    place.addEventListener(
+      kind,
+      (event) => {
+        event.preventDefault();
+        event.stopImmediatePropagation();
+        if (event.dataTransfer) event.dataTransfer.dropEffect = "none";
+      },
+      true,
+    );
+}
+
+const KINDS = { u1: Uint8Array, u2: Uint16Array, u4: Uint32Array, f4: Float32Array };
+
+/**
+ * One array: numbers in their shape, or a picture that the browser has to unpack.
+ * @typedef {{ kind: "u1" | "u2" | "u4" | "f4", shape: number[], values: Uint8Array | Uint16Array | Uint32Array | Float32Array }} Numbers
+ * @typedef {{ kind: "jpeg", shape: number[], values: Uint8Array<ArrayBuffer> }} Jpeg
+ * @typedef {Numbers | Jpeg} Parcel
+ */
+
+/**
+ * @param {ArrayBuffer} buffer
+ * @returns {any} the head with its arrays by name, each a Parcel
+ */
+export function unframed(buffer) {
+  const start = 4 + new DataView(buffer).getUint32(0, true);
+  const head = JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, 4, start - 4)));
+  /** @type {Record<string, Parcel>} */
+  const arrays = {};
+  let at = start;
+  for (const { name, kind, shape, bytes } of head.arrays) {
+    const Kind = KINDS[/** @type {keyof typeof KINDS} */ (kind)] ?? Uint8Array;
+    const values = /** @type {any} */ (new Kind(buffer, at, bytes / Kind.BYTES_PER_ELEMENT));
+    arrays[name] = { kind, shape, values };
+    at += Math.ceil(bytes / 4) * 4;
+  }
+  return { ...head, arrays };
+}
 
 const RETRY_MS = [150, 400, 800, 1000];
 

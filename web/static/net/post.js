@@ -1,6 +1,6 @@
 // What the routes tell, and changes that are not commands: JSON sent to one of them.
 
-import { sentence } from "../model/sentences.js";
+import { sentence } from "../ui/words.js";
 
 /**
  * Resolves to the server's answer. If something was wrong, `wrong` says what, in sentences, and `field` says where.

@@ -1,11 +1,10 @@
-// Inspect: one experience, view or column of pose cells, chosen on the plates, by number or by what is active now.
+// Inspect: one experience, view or column of pose cells, chosen on the plates, by number or by what is active now; a packet can be
+// injected by hand at the chosen column.
 
-import { make } from "../elements/elements.js";
-import { nameOf } from "../model/event_kinds.js";
-import { InjectForm } from "./inject_form.js";
-import { choice, heading, note, renew } from "./parts.js";
+import { make, renew } from "../ui/elements.js";
+import { nameOf } from "../timeline/events.js";
+import { choice, heading, note, SwitchList } from "./parts.js";
 import { Report } from "./report.js";
-import { SwitchList } from "./switch_list.js";
 
 const NOTHING =
   "Nothing is chosen. Hold shift and click on the map, or touch it with Click inspects on: the experience there is shown, with " +
@@ -99,4 +98,54 @@ export class InspectTab {
       inspected: this.inspected.bind(this),
     };
   }
+}
+
+/** Injects a packet by hand at the chosen column, to watch how it competes with the others. */
+class InjectForm {
+  /** @param {import("./panel.js").Ask} ask */
+  constructor(ask) {
+    const heading = slider("heading θ′", "°", 0, 350, 10, 0);
+    const share = slider("share of all activity", "%", 5, 90, 5, 45);
+    const button = make("button", { type: "submit", textContent: "Inject" });
+    this.title = make("h2", { textContent: "Inject a packet here" });
+    this.box = make(
+      "form",
+      { hidden: true, className: "inject" },
+      this.title,
+      note("No sense says it: watch how it competes with the others."),
+      heading.box,
+      share.box,
+      button,
+    );
+    /** @type {{ x: number, y: number } | null} */
+    this.cell = null;
+    this.box.addEventListener("submit", (event) => {
+      event.preventDefault();
+      if (!this.cell) return;
+      const turn = { heading_rad: (heading.value() * Math.PI) / 180, share: share.value() / 100 };
+      ask({ type: "inject_packet", x: this.cell.x, y: this.cell.y, ...turn });
+    });
+  }
+
+  /** @param {{ x: number, y: number } | null} cell */
+  show(cell) {
+    this.cell = cell;
+    this.box.hidden = cell === null;
+  }
+}
+
+/**
+ * @param {string} words @param {string} unit @param {number} low @param {number} high @param {number} step @param {number} value
+ */
+function slider(words, unit, low, high, step, value) {
+  const input = make("input", { type: "range", min: `${low}`, max: `${high}`, step: `${step}`, value: `${value}` });
+  const shown = make("output");
+  const tell = () => {
+    shown.value = `${input.value} ${unit}`.replace(" °", "°");
+    input.setAttribute("aria-valuetext", shown.value);
+  };
+  input.addEventListener("input", tell);
+  tell();
+  const box = make("label", { className: "slider" }, make("span", { textContent: words }), shown, input);
+  return { box, value: () => Number(input.value) };
 }

@@ -1,8 +1,7 @@
 // Memory: the layers over the plates, what has been stored, the goal, the snaps, and what the marks mean.
 
-import { make } from "../elements/elements.js";
-import { Tables, heading } from "./parts.js";
-import { SwitchList } from "./switch_list.js";
+import { make } from "../ui/elements.js";
+import { heading, SwitchList, Tables } from "./parts.js";
 
 const MARKS = [
   ["numbered pill", "a packet and its share of all activity"],

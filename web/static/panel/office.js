@@ -1,9 +1,8 @@
 // Office: what moves in this world, one switch each, the robot's presets, and the places with a name. After a refusal a switch goes back.
 
-import { make } from "../elements/elements.js";
-import { Knob } from "./knob.js";
-import { heading, note, renew, say } from "./parts.js";
-import { TagList } from "./tag_list.js";
+import { make, removeButton, renew, say } from "../ui/elements.js";
+import { Knob } from "./tune.js";
+import { heading, note } from "./parts.js";
 
 const OWN = "own settings";
 
@@ -64,7 +63,7 @@ export class OfficeTab {
     this.preset.blur();
   }
 
-  /** @param {import("../model/knobs.js").Parameter[]} parameters */
+  /** @param {import("./tune.js").Parameter[]} parameters */
   build(parameters) {
     this.knobs = new Map(parameters.map((parameter) => [parameter.name, new Knob(parameter, this.ask)]));
     const boxes = [...this.knobs.values()].map(({ box }) => box);
@@ -107,5 +106,47 @@ export class OfficeTab {
 
   get parts() {
     return { office: this.office.bind(this), tags: this.tags.show.bind(this.tags) };
+  }
+}
+
+/** The places that people have named: a form that names the one where the robot is, and a button for each to send it there. */
+class TagList {
+  /** @param {import("./panel.js").Ask} ask */
+  constructor(ask) {
+    this.ask = ask;
+    const name = make("input", { type: "text", maxLength: 40, required: true, autocomplete: "off" });
+    name.setAttribute("aria-label", "name of this place");
+    name.placeholder = "the kitchen";
+    const form = make(
+      "form",
+      { className: "tag" },
+      name,
+      make("button", { type: "submit", textContent: "Robot is here" }),
+    );
+    form.addEventListener("submit", async (event) => {
+      event.preventDefault();
+      const answer = await this.ask({ type: "tag", name: name.value });
+      if (answer.accepted) name.value = "";
+    });
+    this.list = make("ul", { className: "tags" });
+    this.empty = note("None has a name yet. Name the place where the robot is, and a click on the name sends it back.");
+    this.box = make("section", {}, heading("Places"), form, this.list, this.empty);
+  }
+
+  /** @param {{ tags: string[] }} data */
+  show({ tags }) {
+    renew(this.list, tags, () => tags.map((name) => this.row(name)));
+    this.empty.hidden = tags.length > 0;
+  }
+
+  /** @param {string} name */
+  row(name) {
+    const go = make("button", { type: "button", className: "choice", textContent: name });
+    go.dataset.key = name;
+    go.setAttribute("aria-label", `go to ${name}`);
+    go.addEventListener("click", () => this.ask({ type: "go_to_tag", name }));
+    const remove = removeButton(`forget the name ${name}`);
+    remove.addEventListener("click", () => this.ask({ type: "untag", name }));
+    return make("li", {}, go, remove);
   }
 }

@@ -1,15 +1,62 @@
 // The side panel: seven tabs, of which one is open. What it shows comes over the page's stream, for the open tab alone.
 
-import { labelled, make } from "../elements/elements.js";
-import { icon } from "../elements/icons.js";
+import { icon, labelled, make } from "../ui/elements.js";
 import { InspectTab } from "./inspect.js";
 import { MemoryTab } from "./memory.js";
 import { OfficeTab } from "./office.js";
 import { SensesTab } from "./senses.js";
-import { TabList } from "./tablist.js";
 import { TickTab } from "./tick.js";
 import { TruthTab } from "./truth.js";
 import { TuneTab } from "./tune.js";
+
+/** Tabs for the keyboard: one of them is in the tab order, and the arrows go from one to the next. */
+class TabList {
+  /** @param {readonly string[]} names @param {(name: string) => void} chosen by a person */
+  constructor(names, chosen) {
+    this.chosen = chosen;
+    this.tabs = new Map(names.map((name) => [name, this.tab(name)]));
+    this.box = make("div", { className: "tabs" }, ...this.tabs.values());
+    this.box.setAttribute("role", "tablist");
+    this.box.setAttribute("aria-label", "Panel");
+    this.box.addEventListener("keydown", (event) => this.pressed(event));
+  }
+
+  /** @param {string} name */
+  tab(name) {
+    const tab = make("button", { type: "button", id: `tab-${name.toLowerCase()}`, textContent: name });
+    tab.setAttribute("role", "tab");
+    tab.setAttribute("aria-controls", `panel-${name.toLowerCase()}`);
+    tab.addEventListener("click", () => this.chosen(name));
+    return tab;
+  }
+
+  /** @param {string} name */
+  select(name) {
+    for (const [other, tab] of this.tabs) {
+      tab.setAttribute("aria-selected", String(other === name));
+      tab.tabIndex = other === name ? 0 : -1;
+    }
+    this.tabs.get(name)?.scrollIntoView({ block: "nearest", inline: "nearest" });
+  }
+
+  /** @param {string[]} names */
+  hide(names) {
+    for (const [name, tab] of this.tabs) tab.hidden = names.includes(name);
+  }
+
+  /** @param {KeyboardEvent} event */
+  pressed(event) {
+    const names = [...this.tabs.keys()].filter((name) => !this.tabs.get(name)?.hidden);
+    const now = names.findIndex((name) => this.tabs.get(name) === event.target);
+    /** @type {Record<string, number>} */
+    const places = { ArrowRight: now + 1, ArrowLeft: now - 1, Home: 0, End: names.length - 1 };
+    if (now < 0 || !(event.key in places)) return;
+    event.preventDefault();
+    const name = names[(places[event.key] + names.length) % names.length];
+    this.chosen(name);
+    this.tabs.get(name)?.focus();
+  }
+}
 
 /**
  * @typedef {(command: Command | PageMessage) => Promise<Answer>} Ask
@@ -19,7 +66,6 @@ import { TuneTab } from "./tune.js";
  */
 
 const EVERY_MS = 150; // the server takes ten messages a second
-const narrow = window.matchMedia("(max-width: 1000px)"); // there the panel is a sheet over the plates
 
 export class Panel {
   /**
@@ -28,6 +74,7 @@ export class Panel {
    * @param {(text: string) => void} complain
    */
   constructor(box, link, complain) {
+    const narrow = window.matchMedia("(max-width: 1000px)"); // there the panel is a sheet over the plates
     this.box = box;
     this.link = link;
     /** @type {Ask} */

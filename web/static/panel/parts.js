@@ -1,6 +1,7 @@
-// Small pieces of the panel: tables, notes, choices and bars. What the server says only ever becomes text.
+// Small pieces of the panel: tables, notes, choices, bars, switches, and pictures made of numbers. What the server says only ever
+// becomes text.
 
-import { make } from "../elements/elements.js";
+import { make, say, svg } from "../ui/elements.js";
 
 /** @param {string} words */
 export const heading = (words) => make("h2", { textContent: words });
@@ -10,11 +11,6 @@ export const note = (words) => make("p", { className: "quiet", textContent: word
 
 /** @param {string} words */
 export const caption = (words) => make("p", { className: "caption", textContent: words });
-
-/** Sets a text only when it differs, so that one being read or selected stays. @param {Node} place @param {string} text */
-export function say(place, text) {
-  if (place.textContent !== text) place.textContent = text;
-}
 
 /** @typedef {{ title: string, rows: [string, string][], empty: string }} TableData */
 
@@ -92,22 +88,6 @@ export class Bar {
 }
 
 /**
- * Draw a part of the panel anew when its data has changed; a focused button keeps the focus.
- * @param {HTMLElement} box
- * @param {unknown} data
- * @param {() => Node[]} draw
- */
-export function renew(box, data, draw) {
-  const text = JSON.stringify(data);
-  if (box.dataset.shown === text) return;
-  box.dataset.shown = text;
-  const held = box.contains(document.activeElement) ? /** @type {HTMLElement} */ (document.activeElement) : null;
-  const key = held?.dataset.key;
-  box.replaceChildren(...draw());
-  if (key) /** @type {HTMLElement | null} */ (box.querySelector(`[data-key="${CSS.escape(key)}"]`))?.focus();
-}
-
-/**
  * A number that a click inspects.
  * @param {string} kind "experience" or "view"
  * @param {number} number
@@ -120,4 +100,152 @@ export function choice(kind, number, text, inspect) {
   button.setAttribute("aria-label", `${text}: inspect ${kind} ${number}`);
   button.addEventListener("click", () => inspect({ [kind]: number }));
   return button;
+}
+
+/** @typedef {{ name: string, tab: string, words: string, hint: string, on: boolean }} Switch */
+
+/** The switches of one tab that all pages share (web/switches.py). */
+export class SwitchList {
+  /** @param {string} tab @param {import("./panel.js").Ask} ask */
+  constructor(tab, ask) {
+    this.tab = tab;
+    this.ask = ask;
+    this.box = make("div", { className: "switches" });
+    /** @type {Map<string, HTMLInputElement>} */
+    this.inputs = new Map();
+  }
+
+  /** @param {{ switches: Switch[] }} data */
+  show({ switches }) {
+    for (const of of switches.filter(({ tab }) => tab === this.tab)) {
+      const input = this.inputs.get(of.name) ?? this.add(of);
+      input.checked = of.on;
+    }
+  }
+
+  /** @param {Switch} of */
+  add({ name, words, hint }) {
+    const input = make("input", { type: "checkbox" });
+    input.addEventListener("change", () => this.ask({ type: "switch", name, on: input.checked }));
+    this.box.append(make("label", { className: "check", title: hint }, input, make("span", { textContent: words })));
+    this.inputs.set(name, input);
+    return input;
+  }
+}
+
+/**
+ * @typedef {[number, number, number]} Rgb
+ * @typedef {{ width: number, height: number, rgba: Uint8ClampedArray<ArrayBuffer> }} Pixels
+ */
+
+/** @param {string} colour "#rgb" or "#rrggbb" @returns {Rgb} */
+export function rgb(colour) {
+  const digits = colour.trim().slice(1);
+  const pairs = digits.length === 3 ? [...digits].map((digit) => digit + digit) : (digits.match(/../g) ?? []);
+  const [red = 0, green = 0, blue = 0] = pairs.map((pair) => Number.parseInt(pair, 16));
+  return [red, green, blue];
+}
+
+/** `share` of the way from one colour to another. @param {Rgb} from @param {Rgb} to @param {number} share @returns {Rgb} */
+export function mix(from, to, share) {
+  const [red, green, blue] = from.map((value, k) => value + (to[k] - value) * share);
+  return [red, green, blue];
+}
+
+/**
+ * A picture of grey levels (height, width) or colours (height, width, 3), as they are.
+ * @param {ArrayLike<number>} values
+ * @param {number[]} shape
+ * @returns {Pixels}
+ */
+export function picture(values, [height, width, channels = 1]) {
+  const rgba = new Uint8ClampedArray(4 * width * height);
+  for (let k = 0; k < width * height; k++) {
+    for (let c = 0; c < 3; c++) rgba[4 * k + c] = values[channels * k + (channels === 3 ? c : 0)];
+    rgba[4 * k + 3] = 255;
+  }
+  return { width, height, rgba };
+}
+
+/**
+ * Bars on a common floor, as the path of an SVG of `values.length` by 100. The tallest reaches the top.
+ * @param {ArrayLike<number>} values
+ */
+export function bars(values) {
+  const tallest = Math.max(1e-9, ...Array.from(values));
+  let path = "";
+  for (let k = 0; k < values.length; k++) {
+    const height = (100 * values[k]) / tallest;
+    if (height > 0.5) path += `M${(k + 0.08).toFixed(2)} 100V${(100 - height).toFixed(1)}h.84V100z`;
+  }
+  return path;
+}
+
+/** A colour of the page's theme. @param {string} name of a custom property, without its dashes */
+export const colourOf = (name) => rgb(getComputedStyle(document.documentElement).getPropertyValue(`--${name}`));
+
+/** Pixels in a canvas as they are, enlarged without smoothing. */
+export class Picture {
+  /** @param {string} words what it shows, for people who cannot see it: from the beginning, before there is anything to show */
+  constructor(words) {
+    this.canvas = make("canvas", { width: 1, height: 1, className: "pixels" });
+    this.canvas.setAttribute("role", "img");
+    this.says(words);
+    this.turn = 0; // number of the latest request: a picture that is unpacked after a newer one is dropped
+  }
+
+  /** @param {string} words what it shows now */
+  says(words) {
+    if (this.canvas.getAttribute("aria-label") !== words) this.canvas.setAttribute("aria-label", words);
+    return this;
+  }
+
+  /** @param {Pixels} pixels */
+  draw({ width, height, rgba }) {
+    this.turn += 1;
+    this.size(width, height);
+    this.canvas.getContext("2d")?.putImageData(new ImageData(rgba, width, height), 0, 0);
+  }
+
+  /** @param {import("../net/connection.js").Parcel | undefined} parcel */
+  async show(parcel) {
+    if (!parcel) return;
+    this.canvas.hidden = parcel.kind !== "jpeg" && parcel.values.length === 0; // the source has no such picture
+    if (this.canvas.hidden) return;
+    if (parcel.kind !== "jpeg") return this.draw(picture(parcel.values, parcel.shape));
+    const turn = ++this.turn;
+    const image = await createImageBitmap(new Blob([parcel.values], { type: "image/jpeg" }));
+    if (turn === this.turn) {
+      this.size(image.width, image.height);
+      this.canvas.getContext("2d")?.drawImage(image, 0, 0);
+    }
+    image.close();
+  }
+
+  /** @param {number} width @param {number} height */
+  size(width, height) {
+    if (this.canvas.width !== width) this.canvas.width = width;
+    if (this.canvas.height !== height) this.canvas.height = height;
+  }
+}
+
+/** Activity by heading: bars on a common floor, 0° to 360°. */
+export class Histogram {
+  /** @param {string} words */
+  constructor(words) {
+    this.path = svg("path", {});
+    this.drawing = svg(
+      "svg",
+      { role: "img", "aria-label": words, preserveAspectRatio: "none", class: "bars" },
+      this.path,
+    );
+    const ticks = ["0°", "180°", "360°"].map((tick) => make("span", { textContent: tick }));
+    this.box = make("div", { className: "histogram" }, this.drawing, make("div", { className: "ticks" }, ...ticks));
+  }
+
+  /** @param {ArrayLike<number>} values */
+  show(values) {
+    this.drawing.setAttribute("viewBox", `0 0 ${values.length} 100`);
+    this.path.setAttribute("d", bars(values));
+  }
 }

@@ -1,8 +1,25 @@
 // Tick: one tick stage by stage, and what the parts of a tick cost.
 
-import { make } from "../elements/elements.js";
-import { partWords, shareOf, tickWords } from "../model/timings.js";
-import { Bar, heading, note, say } from "./parts.js";
+import { make, say } from "../ui/elements.js";
+import { Bar, heading, note } from "./parts.js";
+
+/** @typedef {[part: string, mean_ms: number, worst_ms: number]} Timing */
+
+/**
+ * The time of all parts together, compared with the time available.
+ * @param {Timing[]} parts
+ * @param {number} thereAre_ms
+ */
+export function tickWords(parts, thereAre_ms) {
+  const all = parts.reduce((sum, [, mean_ms]) => sum + mean_ms, 0);
+  return `A tick takes ${all.toFixed(2)} of its ${thereAre_ms.toFixed(0)} ms`;
+}
+
+/** @param {Timing} timing */
+export const partWords = ([, mean_ms, worst_ms]) => `${mean_ms.toFixed(2)}, worst ${worst_ms.toFixed(1)} ms`;
+
+/** A part's time as a share of the most expensive part's. @param {Timing[]} parts @param {Timing} timing */
+export const shareOf = (parts, [, mean_ms]) => mean_ms / Math.max(1e-9, ...parts.map(([, other_ms]) => other_ms));
 
 const NOTHING = "Press next stage: the session pauses, and you go through one tick and see what each stage did.";
 const TRUE =
@@ -52,7 +69,7 @@ export class TickTab {
     if (at !== null) rows[at].scrollIntoView({ block: "nearest" });
   }
 
-  /** @param {{ there_are_ms: number, parts: import("../model/timings.js").Timing[] }} data */
+  /** @param {{ there_are_ms: number, parts: Timing[] }} data */
   cost_of({ there_are_ms, parts }) {
     say(this.cost, tickWords(parts, there_are_ms));
     while (this.rows.length < parts.length) this.add();

@@ -1,12 +1,141 @@
-// The menu beside the views: what can be kept of the moment that is shown, and shared. It also opens what others have shared.
+// The menu beside the views: what can be kept of the moment that is shown, and shared. It also opens what others have shared. The
+// plates as they are on the stage become a picture or a film of a stretch of time, made in this browser from viser's canvas.
 
-import { $, find } from "../elements/dom.js";
-import { Opening } from "./opening.js";
-import { Share } from "./share.js";
-import { StageFilm, naming } from "./stage_film.js";
+import { $, find, make } from "../ui/elements.js";
+import { download, saveCanvas, savePng, saveSvg, shown } from "./pictures.js";
+import { fine, toast } from "../ui/words.js";
+import { Opening, Share } from "./share.js";
 import { reasons } from "../net/post.js";
-import { savePng, saveSvg } from "./pictures.js";
-import { toast } from "../elements/toasts.js";
+
+/** The run and the moment, for the name of a file. @param {string | null} world @param {number} seed @param {number} time_s */
+export function nameOfMoment(world, seed, time_s) {
+  const minutes = Math.floor(time_s / 60 + 1e-9);
+  const seconds = Math.max(0, time_s - 60 * minutes).toFixed(1);
+  const where = (world ?? "recording").replace(/[^A-Za-z0-9]+/g, "-");
+  return `${where}-seed${seed}-${minutes}m${seconds.padStart(4, "0")}s`;
+}
+
+const TYPES = ["video/webm;codecs=vp9", "video/webm;codecs=vp8", "video/webm", "video/mp4"]; // as a browser knows them
+const FPS = 30;
+const BITS = 6_000_000; // a second
+const LATELY_S = 10;
+const LOOKS = 40; // frames that a picture waits for
+
+/** The plates as they are on the stage: a picture of them, and a film of a stretch of time, made from viser's canvas. */
+class StageFilm {
+  /**
+   * @param {import("../net/connection.js").Connection} link
+   * @param {import("../timeline/timeline.js").Timeline} timeline
+   */
+  constructor(link, timeline) {
+    this.link = link;
+    this.timeline = timeline;
+    /** @type {{ from: number, to: number, last: number, recorder: MediaRecorder, parts: Blob[], whole: boolean } | null} */
+    this.film = null;
+    /** @type {State | null} */
+    this.state = null;
+    $("film-cancel").addEventListener("click", () => this.end(false));
+  }
+
+  /** The one that viser draws on: the largest. */
+  get canvas() {
+    const all = [...($("stage").contentDocument?.querySelectorAll("canvas") ?? [])];
+    const largest = all.sort((a, b) => b.width * b.height - a.width * a.height)[0];
+    return largest?.width ? largest : null;
+  }
+
+  // What is drawn can be read only until the frame is shown.
+  async picture() {
+    const [canvas, inside] = [this.canvas, $("stage").contentWindow];
+    if (!canvas || !inside) return toast("The stage is not awake yet.", { bad: true });
+    const copy = make("canvas", { width: canvas.width, height: canvas.height });
+    const pen = copy.getContext("2d", { willReadFrequently: true });
+    for (let look = 0; look < LOOKS && pen; look++) {
+      await new Promise((resolve) =>
+        inside.addEventListener("drawn", () => resolve(pen.drawImage(canvas, 0, 0)), { once: true }),
+      );
+      if (pen.getImageData(copy.width >> 1, copy.height >> 1, 1, 1).data[3] > 0) return saveCanvas(copy, "stage");
+    }
+    return toast("The stage has drawn nothing that could be kept; try again.", { bad: true });
+  }
+
+  /** Where there is no room for the marks a and b: what led to the moment that is shown. @returns {[number, number] | null} */
+  lately() {
+    const { time, time_s } = this.timeline;
+    if (!time || $("mark-a").checkVisibility() || time_s - time.begin_s < 1) return null;
+    return [Math.max(time.begin_s, time_s - LATELY_S), time_s];
+  }
+
+  /** Plays the stretch between the marks a and b from its beginning, and records it. */
+  async begin() {
+    const loop = this.timeline.time?.loop ?? this.lately();
+    const type = TYPES.find((name) => window.MediaRecorder?.isTypeSupported(name));
+    if (this.film) return toast("A film is being made.", { bad: true });
+    if (!loop) return toast("Mark a stretch first, with a and b above the timeline; the film shows it.", { bad: true });
+    if (!this.canvas || !type) return toast("This browser cannot make films of the stage.", { bad: true });
+    const [from, to] = loop;
+    const sought = await this.link.ask({ type: "seek", time_s: from });
+    if (!sought.accepted) return;
+    const recorder = new MediaRecorder(this.canvas.captureStream(FPS), { mimeType: type, videoBitsPerSecond: BITS });
+    const film = { from, to, last: from, recorder, parts: /** @type {Blob[]} */ ([]), whole: false };
+    recorder.addEventListener("dataavailable", ({ data }) => film.parts.push(data));
+    recorder.addEventListener("stop", () => this.save(film));
+    this.film = film;
+    this.show();
+    recorder.start(1000);
+    await this.link.ask({ type: "resume" });
+  }
+
+  /** The page has been told of a moment. @param {State} state @param {PageFields} page */
+  at(state, page) {
+    this.state = state;
+    const film = this.film;
+    if (!film) return;
+    const over = state.time_s >= film.to - 0.05 || state.time_s < film.last - 0.05 || !page.time?.past;
+    film.last = Math.max(film.last, state.time_s);
+    if (over) this.end(true);
+    else this.show();
+  }
+
+  show() {
+    const box = $("film");
+    box.hidden = this.film === null;
+    if (!this.film) return;
+    const { from, to, last } = this.film;
+    find(box, ".words").textContent = `${fine(last)}, from ${fine(from)} to ${fine(to)}`;
+    /** @type {HTMLProgressElement} */ (find(box, "progress")).value = (last - from) / (to - from);
+  }
+
+  /** @param {boolean} whole false: it is given up */
+  async end(whole) {
+    const film = this.film;
+    if (!film) return;
+    this.film = null;
+    film.whole = whole;
+    this.show();
+    await this.link.ask({ type: "pause" });
+    film.recorder.stop();
+    for (const track of film.recorder.stream.getTracks()) track.stop();
+    if (!whole) toast("The film was given up.");
+  }
+
+  /** @param {NonNullable<StageFilm["film"]>} film */
+  save({ from, to, parts, recorder, whole }) {
+    if (!whole) return;
+    const blob = new Blob(parts, { type: recorder.mimeType });
+    const ending = recorder.mimeType.startsWith("video/mp4") ? "mp4" : "webm";
+    const run = nameOfMoment(this.state?.world ?? null, this.state?.seed ?? 0, from);
+    const name = `${run}-to-${nameOfMoment("", 0, to).split("-").at(-1)}.${ending}`;
+    download(blob, name);
+    toast(blob.size ? `Saved ${name}.` : `Saved ${name}, which is empty: the stage drew nothing.`, { bad: !blob.size });
+  }
+}
+
+/** The run and the moment that are shown. @param {State} state */
+function naming({ world, seed, time_s }) {
+  shown.name = nameOfMoment(world, seed, time_s);
+  shown.words = `${world ?? "recording"}, seed ${seed}, ${fine(time_s)}`;
+}
 
 export class Keeping {
   /**

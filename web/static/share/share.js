@@ -1,12 +1,36 @@
-// The moment that is shown, for somebody else: as a link, as a file, and as lines of Python.
+// The moment that is shown, for somebody else: as a link, as a file, and as lines of Python. What somebody else has made of a moment
+// is opened from the address of the page or from a file, and shown as they saw it.
 
-import { $ } from "../elements/dom.js";
-import { download } from "./download.js";
-import { fine } from "../model/timeline.js";
-import { momentWords, sizeWords } from "../model/moments.js";
+import { $, find, say, setIcon } from "../ui/elements.js";
+import { download } from "./pictures.js";
+import { fine, toast } from "../ui/words.js";
 import { post } from "../net/post.js";
-import { toast } from "../elements/toasts.js";
 
+/** @param {Moment} moment @param {string} time */
+export function momentWords({ tick, state_hash, orders }, time) {
+  const given = orders === 0 ? "no orders" : orders === 1 ? "one order" : `${orders.toLocaleString("en")} orders`;
+  return `${time}, tick ${tick}, with ${given}. Whoever opens it plays the run up to here and gets the same bits: state hash ${state_hash.slice(0, 12)}.`;
+}
+
+/** @param {number} bytes */
+const sizeWords = (bytes) => (bytes < 1e6 ? `${Math.ceil(bytes / 1000)} kB` : `${(bytes / 1e6).toFixed(1)} MB`);
+
+/** The link in an address; null: there is none. @param {string} hash */
+export const linkIn = (hash) => /^#(run=.+)$/.exec(hash)?.[1] ?? null;
+
+/** What the note says while a situation is played, and when it is there. @param {SituationFields} situation */
+export function situationWords({ state, tick, end_tick, words }) {
+  const titles = {
+    playing: "Playing up to the moment",
+    same: "The same run",
+    other: "Not the same run",
+    stopped: "Not there",
+  };
+  const far = `tick ${tick.toLocaleString("en")} of ${end_tick.toLocaleString("en")}`;
+  return { title: titles[state], words: state === "playing" ? far : words, share: end_tick ? tick / end_tick : 1 };
+}
+
+/** The moment as a link, as a file, and as lines of Python. */
 export class Share {
   /** @param {() => { plate: ViewName, tab: string, page: string }} look what this page shows */
   constructor(look) {
@@ -88,5 +112,76 @@ export class Share {
     const words = done ? `${what}: copied, ${text.length.toLocaleString("en")} characters.` : "Select it and copy it.";
     $("share-told").textContent = words;
     toast(words, { bad: !done });
+  }
+}
+
+const ICONS = /** @type {const} */ ({ playing: "share", same: "check", other: "warn", stopped: "warn" });
+
+/** Opens what somebody else has made of a moment, and shows it as they saw it. */
+export class Opening {
+  /**
+   * @param {import("../net/connection.js").Connection} link
+   * @param {{ mayLeave: () => Promise<boolean>, look: (look: Look) => void }} page
+   */
+  constructor(link, page) {
+    this.link = link;
+    this.page = page;
+    this.begun = false;
+    this.looked = -1; // the run whose look has been taken over
+    this.away = -1; // the run whose note was put away
+    this.run = -1;
+    window.addEventListener("hashchange", () => this.address());
+    $("situation-leave").addEventListener("click", () => link.ask({ type: "leave_situation" }));
+    $("situation-close").addEventListener("click", () => {
+      this.away = this.run;
+      $("situation").hidden = true;
+    });
+  }
+
+  /** A link in the page's address is opened once; then the address is the page's own again, so that a reload changes nothing. */
+  async address() {
+    const link = linkIn(location.hash);
+    if (!link) return;
+    history.replaceState(null, "", location.pathname);
+    await this.open(link, "The link");
+  }
+
+  /** Opens the file if it is a situation. False: it is something else. @param {File} file */
+  async offer(file) {
+    if (!/\.json$/i.test(file.name) || !(await file.slice(0, 200).text()).includes('"ratslam situation/')) return false;
+    await this.open(await file.text(), file.name);
+    return true;
+  }
+
+  /** @param {string} text @param {string} what */
+  async open(text, what) {
+    if (!(await this.page.mayLeave())) return;
+    const told = await post("/api/situation/open", { text });
+    if (told.wrong) toast(`${what} cannot be opened. ${told.wrong}`, { bad: true });
+  }
+
+  /** What arrives: how far it is. @param {PageFields} page */
+  show({ situation, run }) {
+    if (!this.begun) {
+      this.begun = true;
+      this.address();
+    }
+    const box = $("situation");
+    this.run = run;
+    box.hidden = !situation || this.away === run;
+    if (!situation) return;
+    if (this.looked !== run) {
+      this.looked = run;
+      this.page.look(situation.look);
+    }
+    const { title, words, share } = situationWords(situation);
+    box.dataset.state = situation.state;
+    setIcon(find(box, ".head"), ICONS[situation.state]);
+    say(find(box, ".head b"), title);
+    say(find(box, ".words"), words);
+    const bar = /** @type {HTMLProgressElement} */ (find(box, "progress"));
+    const playing = situation.state === "playing";
+    bar.hidden = $("situation-leave").hidden = !playing;
+    bar.value = share;
   }
 }

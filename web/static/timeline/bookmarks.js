@@ -1,9 +1,7 @@
 // Moments that somebody has named: a list in the box of events, and marks on the timeline.
 
-import { $ } from "../elements/dom.js";
-import { labelled, make } from "../elements/elements.js";
-import { icon, svg } from "../elements/icons.js";
-import { fine } from "../model/timeline.js";
+import { $, icon, labelled, make, svg } from "../ui/elements.js";
+import { fine } from "../ui/words.js";
 
 export class Bookmarks {
   /** @param {import("./timeline.js").Timeline} timeline @param {import("../net/connection.js").Connection} link */
@@ -103,7 +101,7 @@ export class Bookmarks {
     return form;
   }
 
-  /** @param {import("../model/timeline.js").Axis} x @param {number} y @param {number} from @param {number} to */
+  /** @param {import("./line.js").Axis} x @param {number} y @param {number} from @param {number} to */
   marks(x, y, from, to) {
     return this.rows
       .filter(({ time_s }) => time_s >= from && time_s <= to)

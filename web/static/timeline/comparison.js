@@ -1,10 +1,51 @@
-// Two branches side by side on one clock: both maps, both packets, both errors, and where they differ first.
+// When two branches parted, and both side by side on one clock: both maps, both packets, both errors, and where they differ first.
 
-import { $ } from "../elements/dom.js";
-import { make } from "../elements/elements.js";
-import { svg } from "../elements/icons.js";
-import { fine } from "../model/timeline.js";
-import { frameOf, lying } from "../model/side_maps.js";
+import { $, make, svg } from "../ui/elements.js";
+import { fine } from "../ui/words.js";
+
+const AROUND_M = 0.6;
+
+/** Points turned by an angle, as the map lies on the stage. @param {number[][]} xy @param {number} turn_rad */
+export function lying(xy, turn_rad) {
+  const [cos, sin] = [Math.cos(turn_rad), Math.sin(turn_rad)];
+  return xy.map(([x, y]) => [cos * x - sin * y, sin * x + cos * y]);
+}
+
+/** The viewBox in which all maps have room; y grows downwards there. @param {SideFields[]} sides */
+export function frameOf(sides) {
+  const all = sides.flatMap(({ xy, robot, turn_rad }) => lying([...xy, [robot.x, robot.y]], turn_rad));
+  const [xs, ys] = [all.map(([x]) => x), all.map(([, y]) => -y)];
+  const [left, top] = [Math.min(...xs) - AROUND_M, Math.min(...ys) - AROUND_M];
+  return [left, top, Math.max(...xs) + AROUND_M - left, Math.max(...ys) + AROUND_M - top]
+    .map((n) => n.toFixed(2))
+    .join(" ");
+}
+
+/**
+ * When two branches parted: the first time that they do not share.
+ * @param {BranchFields[]} branches
+ * @param {number} a
+ * @param {number} b
+ */
+export function parted(branches, a, b) {
+  const lines = [a, b].map((number) => lineOf(branches, number));
+  let same = 0;
+  while (lines[0][same] && lines[0][same] === lines[1][same]) same++;
+  return Math.min(...lines.map((line) => line[same]?.from_s ?? Infinity));
+}
+
+/** A branch and its forebears, the first of them first. @param {BranchFields[]} branches @param {number} number */
+function lineOf(branches, number) {
+  /** @type {BranchFields[]} */
+  const line = [];
+  for (
+    let at = branches.find((one) => one.number === number);
+    at;
+    at = branches.find((one) => one.number === at?.parent)
+  )
+    line.unshift(at);
+  return line;
+}
 
 export class Comparison {
   /** @param {import("./timeline.js").Timeline} timeline @param {import("../net/connection.js").Connection} link */

@@ -1,19 +1,13 @@
 // The timeline: events as marks of different shape and colour, with names where there is room, the moment that is shown, and the
 // branches. Dragging it shows the past. Marks that are pointed at or touched say more.
 
-import { $ } from "../elements/dom.js";
-import { make } from "../elements/elements.js";
-import { svg } from "../elements/icons.js";
-import { clock, tickTimesIn } from "../model/clock.js";
-import { nameOf } from "../model/event_kinds.js";
-import { counted, fine, labelsOf, marksOf, parted, whole, within, words, zoomed } from "../model/timeline.js";
+import { $, make, svg } from "../ui/elements.js";
+import { clock, fine } from "../ui/words.js";
+import { labelsOf, marksOf, Pointers, tickTimesIn, whole, within, zoomed } from "./line.js";
+import { counted, EventList, legend, markAt, nameOf, words } from "./events.js";
+import { Comparison, parted } from "./comparison.js";
 import { Bookmarks } from "./bookmarks.js";
-import { Comparison } from "./comparison.js";
-import { EventList } from "./event_list.js";
-import { legend, markAt } from "./events.js";
-import { Pointers } from "./pointers.js";
-import { Seeker } from "./seeker.js";
-import { Tools } from "./tools.js";
+import { Seeker, Tools } from "./tools.js";
 
 const REDRAW_MS = 500;
 const MOST = 2000; // events, as the server keeps them
@@ -36,11 +30,11 @@ export class Timeline {
     this.time = null;
     /** @type {number | null} */
     this.dragged = null; // the time under the pointer, until the page has it
-    /** @type {import("../model/timeline.js").Span | null} */
+    /** @type {import("./line.js").Span | null} */
     this.part = null; // of the run; null: all of it
     /** @type {ReturnType<typeof setTimeout> | undefined} */
     this.due = undefined;
-    /** @type {import("../model/timeline.js").Axis} */
+    /** @type {import("./line.js").Axis} */
     this.x = () => 0; // where a time is
     this.watches = link.watches;
     this.seeker = new Seeker(link);
@@ -201,7 +195,7 @@ export class Timeline {
     this.place.setAttribute("aria-valuetext", says);
   }
 
-  /** The other branches, each a line that leaves its parent's. @param {number} y @param {import("../model/timeline.js").Axis} x */
+  /** The other branches, each a line that leaves its parent's. @param {number} y @param {import("./line.js").Axis} x */
   branchLines(y, x) {
     const { branches = [], branch = 1 } = this.time ?? {};
     return branches
@@ -217,7 +211,7 @@ export class Timeline {
       });
   }
 
-  /** @param {number} y @param {import("../model/timeline.js").Axis} x */
+  /** @param {number} y @param {import("./line.js").Axis} x */
   loopMarks(y, x) {
     const { a } = this.tools;
     const loop = this.time?.loop ?? (a === null ? null : [a, a]);

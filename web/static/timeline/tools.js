@@ -1,10 +1,8 @@
-// The buttons above the timeline: steps, events, marks of a loop, branches, going on from the past and back to now.
+// What steers time: the buttons above the timeline (steps, events, marks of a loop, branches, going on from the past and back to now),
+// who asks for moments of the past, and what to run until.
 
-import { $, find } from "../elements/dom.js";
-import { labelled, make } from "../elements/elements.js";
-import { icon } from "../elements/icons.js";
-import { clock } from "../model/clock.js";
-import { fine, nextEvent } from "../model/timeline.js";
+import { $, find, icon, labelled, make, renew, say } from "../ui/elements.js";
+import { clock, fine, toast } from "../ui/words.js";
 
 export class Tools {
   /** @param {import("./timeline.js").Timeline} timeline @param {import("../net/connection.js").Connection} link */
@@ -107,5 +105,170 @@ export class Tools {
     button.setAttribute("aria-pressed", String(on));
     button.addEventListener("click", () => this.timeline.comparison.toggle());
     return button;
+  }
+}
+
+/**
+ * The time of the next event after a time (`way` 1) or before it (-1); undefined: there is none.
+ * @param {TimelineEvent[]} events oldest first
+ * @param {number} time_s
+ * @param {1 | -1} way
+ */
+export function nextEvent(events, time_s, way) {
+  const times = events.map((event) => event.time_s).filter((time) => (time - time_s) * way > 0.05);
+  return way > 0 ? times[0] : times.at(-1);
+}
+
+const PATIENCE_MS = 150;
+
+const RESTED_MS = 25;
+
+const LOOK_MS = 10;
+
+/**
+ * Asks for moments one at a time: while one is on its way, only the newest wish waits. A moment that takes long is given up for a
+ * newer wish; where the pointer has come to rest, at once, but not twice running: a slow drag rests at each step.
+ */
+export class Seeker {
+  /** @param {import("../net/connection.js").Connection} link */
+  constructor(link) {
+    this.link = link;
+    /** @type {Seek | null} */
+    this.wish = null;
+    this.wished = 0; // when, ms
+    this.busy = false;
+    this.gaveUp = false; // the last moment, before it came
+    /** @type {number | null} */
+    this.aim = null; // the tick asked for last, until the page is told of it: quick steps count from here
+  }
+
+  /** The page has been told of a moment. What comes after an answer is not older than it. */
+  told() {
+    if (!this.busy) this.aim = null;
+  }
+
+  /** @param {Omit<Seek, "type">} where */
+  async seek(where) {
+    this.wish = { type: "seek", ...where };
+    this.wished = performance.now();
+    this.aim = where.tick ?? null;
+    if (this.busy) return;
+    this.busy = true;
+    while (this.wish) {
+      const wish = this.wish;
+      this.wish = null;
+      await this.answered(wish);
+    }
+    this.busy = false;
+  }
+
+  /** Waits for the answer, or until a newer wish has waited for long enough. @param {Seek} wish */
+  async answered(wish) {
+    let here = false;
+    const answer = this.link.ask(wish).then(() => {
+      here = true;
+    });
+    const asked = performance.now();
+    const isOver = () =>
+      performance.now() - asked > PATIENCE_MS || (!this.gaveUp && performance.now() - this.wished > RESTED_MS);
+    while (!here && !(this.wish && isOver()))
+      await Promise.race([answer, new Promise((resolve) => setTimeout(resolve, LOOK_MS))]);
+    this.gaveUp = !here;
+  }
+}
+
+/** @type {{ words: string, wish: Omit<RunUntil, "type"> }[]} */
+export const CHOICES = [
+  { words: "a loop closes", wish: { what: "closure" } },
+  { words: "it is lost", wish: { what: "lost" } },
+  { words: "it knows again where it is", wish: { what: "found again" } },
+  { words: "the packet snaps", wish: { what: "snap" } },
+  { words: "it is at its goal", wish: { what: "goal reached" } },
+];
+
+/** So many packets can be waited for. */
+const PACKETS = { least: 2, most: 9 };
+
+/** What is said when it has happened; null while it runs, and if it was broken off. A warning says that it came too late. @param {UntilView} until */
+export const ending = ({ state, words }) => (state === "met" ? `Stopped at this very tick: ${words}.` : null);
+
+/** @typedef {Omit<RunUntil, "type">} Wish */
+
+/** "Until": runs as fast as it can until something happens, and stops at that very tick. */
+export class RunUntilMenu {
+  /**
+   * @param {(wish: Command) => Promise<boolean>} command
+   * @param {() => boolean} shownElsewhere whether somebody else shows that it runs, and says what comes of it
+   */
+  constructor(command, shownElsewhere) {
+    this.shownElsewhere = shownElsewhere;
+    /** @type {UntilView["state"] | null} */
+    this.state = null;
+    this.command = command;
+    const { least, most } = PACKETS;
+    this.count = make("input", { type: "number", value: String(least), min: String(least), max: String(most) });
+    this.count.setAttribute("aria-label", "How many packets");
+    this.place = make("select", { ariaLabel: "Which place" });
+    this.comes = this.row("it comes to", this.place, () => ({ what: "place", place: this.place.value }));
+    const packets = this.row("packets compete:", this.count, () => ({
+      what: "packets",
+      count: this.count.valueAsNumber,
+    }));
+    $("until-list").replaceChildren(
+      ...CHOICES.map(({ words, wish }) => this.button(words, () => wish)),
+      packets,
+      this.comes,
+    );
+    $("until-open").addEventListener("click", () => this.show($("until-box").hidden === true));
+    $("until-cancel").addEventListener("click", () => command({ type: "pause" }));
+    window.addEventListener("pointerdown", ({ target }) => {
+      const inside = [$("until-box"), $("until-open")].some((part) => part.contains(/** @type {Node} */ (target)));
+      if (!inside) this.show(false);
+    });
+  }
+
+  /** @param {string} words @param {() => Wish} wish */
+  button(words, wish) {
+    const button = make("button", { type: "button", textContent: words });
+    button.addEventListener("click", async () => {
+      this.show(false);
+      $("until-open").focus();
+      await this.command({ type: "run_until", ...wish() });
+    });
+    return button;
+  }
+
+  /** A choice with something to fill in. @param {string} words @param {HTMLElement} field @param {() => Wish} wish */
+  row(words, field, wish) {
+    return make("div", { className: "until-row" }, this.button(words, wish), field);
+  }
+
+  /** @param {State} state @param {PageFields["places"]} places of the office, by name */
+  at({ until }, places) {
+    const names = places.map(([name]) => name);
+    this.comes.hidden = !names.length;
+    renew(this.place, names, () => names.map((name) => make("option", { value: name, textContent: name })));
+    const before = this.state;
+    this.state = until?.state ?? null;
+    $("until").hidden = until?.state !== "running" || this.shownElsewhere();
+    if (!until) return;
+    say($("until-words"), until.words);
+    $("until-done").value = until.progress;
+    const end = before === "running" ? ending(until) : null;
+    if (end && !this.shownElsewhere()) toast(end, { notice: true });
+  }
+
+  /** @param {boolean} on */
+  show(on) {
+    $("until-box").hidden = !on;
+    $("until-open").setAttribute("aria-expanded", String(on));
+  }
+
+  /** True when it was open. */
+  close() {
+    if ($("until-box").hidden) return false;
+    this.show(false);
+    $("until-open").focus();
+    return true;
   }
 }

@@ -1,14 +1,10 @@
 // The plates in 3-D: viser's client in a frame of our own origin, and the view buttons. The frame belongs to one program and one
 // graphics context; when either is another, it is thrown away and built anew. While it has drawn nothing, the drawing stands there.
 
-import { $, find } from "../elements/dom.js";
-import { toast } from "../elements/toasts.js";
-import { takeClicks } from "./clicks.js";
-import { Drawing } from "./drawing.js";
-import { takePinches } from "./pinch.js";
-import { restBetweenFrames } from "./resting.js";
-import { fewerPixels, hasWebgl, spareSoftware } from "./software.js";
-import { firstFrame } from "./waking.js";
+import { $, find } from "../ui/elements.js";
+import { toast } from "../ui/words.js";
+import { takeClicks, takePinches } from "./fingers.js";
+import { fewerPixels, firstFrame, isSoftware, restBetweenFrames, spareSoftware, whoDraws } from "./frames.js";
 
 const LATE_MS = 20_000;
 const ON = "turn on hardware acceleration in the browser's settings and load this page again.";
@@ -19,17 +15,19 @@ const WORDS = {
   lost: "The browser has taken the graphics away; until they are back, this is a drawing.",
 };
 
-export const phone = window.matchMedia("(max-width: 760px), (pointer: coarse) and (max-height: 500px)");
+export const phone = () => window.matchMedia("(max-width: 760px), (pointer: coarse) and (max-height: 500px)").matches;
 
 export class Viewer extends EventTarget {
-  /** @param {import("../net/connection.js").Connection} link @param {import("../driving/keys.js").Keys} keys */
+  /** @param {import("../net/connection.js").Connection} link @param {import("../ui/keys.js").Keys} keys */
   constructor(link, keys) {
     super();
     this.link = link;
     this.keys = keys;
     this.frame = $("stage");
+    this.drawer = whoDraws();
+    this.soft = this.drawer !== null && isSoftware(this.drawer);
     /** @type {ViewName} */
-    this.view = phone.matches ? "map" : "all";
+    this.view = phone() ? "map" : "all";
     /** @type {number | string | null} */
     this.launch = null; // the server's, to notice that it has started anew
     this.buttons = /** @type {HTMLElement[]} */ ([...document.querySelectorAll("[data-view]")]);
@@ -48,10 +46,10 @@ export class Viewer extends EventTarget {
   build() {
     clearTimeout(this.late);
     this.frame.classList.remove("awake");
-    this.drawing.show(hasWebgl ? WORDS.waking : WORDS.off);
-    if (!hasWebgl) return;
+    this.drawing.show(this.drawer === null ? WORDS.off : WORDS.waking);
+    if (this.drawer === null) return;
     this.late = setTimeout(() => this.drawing.say(WORDS.late), LATE_MS);
-    const path = `/viser/?websocket=ws://${location.host}/viser/ws/${this.link.page}&hideViserLogo${fewerPixels()}`;
+    const path = `/viser/?websocket=ws://${location.host}/viser/ws/${this.link.page}&hideViserLogo${this.soft ? fewerPixels() : ""}`;
     this.frame.contentWindow?.location.replace(path); // not a page more to go back through
   }
 
@@ -112,7 +110,7 @@ export class Viewer extends EventTarget {
     inside.addEventListener("webglcontextrestored", () => this.build(), true);
     firstFrame(inside).then(() => this.wake(paper)); // it looks at every frame, before the loop of them may rest
     const editor = $("editor");
-    const wake = restBetweenFrames(inside, () => !editor.hidden, spareSoftware(inside));
+    const wake = restBetweenFrames(inside, () => !editor.hidden, this.soft ? spareSoftware(inside) : () => null);
     new MutationObserver(wake).observe(editor, { attributeFilter: ["hidden"] });
     takePinches(inside);
     if (!this.link.watches) takeClicks(inside, (at, shift) => this.click(at, shift));
@@ -158,4 +156,97 @@ function dismissSlowNotice(paper) {
     return true;
   }
   return false;
+}
+
+const ANEW_MS = 1000; // a picture costs the server some hundredths of a second
+const FADE_MS = 400;
+const UNITS = 500; // of the picture, from its middle to its upper edge
+
+/**
+ * The plates as the server draws them (SVG), in the stage's place: from the first paint until viser has drawn a frame, and whenever
+ * it cannot draw. The drawing goes on with the run, and a click on it is one on the plates.
+ */
+class Drawing {
+  /**
+   * @param {import("../net/connection.js").Connection} link
+   * @param {{ view: ViewName, click: (at: Point, shift: boolean, drawn: Drawn | null) => void }} viewer
+   */
+  constructor(link, viewer) {
+    this.link = link;
+    this.viewer = viewer;
+    this.box = $("waiting");
+    /** @type {Drawn | null} */
+    this.drawn = null; // what the picture shows
+    this.busy = this.old = false;
+    /** @type {ReturnType<typeof setTimeout> | undefined} */
+    this.fading = undefined;
+    link.on("state", () => this.draw());
+    new ResizeObserver(() => this.draw()).observe(this.box);
+    new MutationObserver(() => this.draw()).observe(document.documentElement, { attributeFilter: ["data-theme"] });
+    this.box.addEventListener("click", (event) => this.clicked(event));
+  }
+
+  /** @param {string} words what is missing, and why */
+  show(words) {
+    clearTimeout(this.fading);
+    this.box.hidden = false;
+    this.box.classList.remove("over");
+    this.say(words);
+    this.draw();
+  }
+
+  /** @param {string} words */
+  say(words) {
+    find(this.box, ".words").textContent = words;
+  }
+
+  fade() {
+    this.box.classList.add("over");
+    this.fading = setTimeout(() => (this.box.hidden = true), FADE_MS);
+  }
+
+  /** Of another program. */
+  forget() {
+    this.box.querySelector(".picture")?.remove();
+    this.box.classList.remove("pictured");
+    this.drawn = null;
+  }
+
+  async draw() {
+    this.old = true;
+    if (this.busy || this.box.hidden || this.box.classList.contains("over")) return;
+    this.busy = true;
+    this.old = false;
+    await this.fetch();
+    setTimeout(() => {
+      this.busy = false;
+      if (this.old) this.draw();
+    }, ANEW_MS);
+  }
+
+  async fetch() {
+    const { view } = this.viewer;
+    const theme = document.documentElement.dataset.theme ?? "dark";
+    const { width, height } = this.box.getBoundingClientRect();
+    const aspect = Math.min(Math.max(width / Math.max(height, 1), 0.2), 6).toFixed(2);
+    const answer = await fetch(`/api/stage.svg?view=${view}&theme=${theme}&aspect=${aspect}`).catch(() => null);
+    if (answer?.status !== 200) return;
+    const picture = new DOMParser().parseFromString(await answer.text(), "image/svg+xml").documentElement;
+    picture.classList.add("picture");
+    this.forget();
+    this.box.append(document.importNode(picture, true));
+    this.box.classList.add("pictured");
+    this.drawn = { view, aspect: Number(aspect) };
+  }
+
+  /** @param {MouseEvent} event */
+  clicked({ clientX, clientY, shiftKey }) {
+    if (this.link.watches) return;
+    const picture = /** @type {SVGSVGElement | null} */ (this.box.querySelector(".picture"));
+    const placed = picture?.getScreenCTM();
+    if (!placed)
+      return void toast("No goal set: the drawing is still to come. Click again in a moment.", { bad: true });
+    const { x, y } = new DOMPoint(clientX, clientY).matrixTransform(placed.inverse());
+    this.viewer.click([x / UNITS, -y / UNITS], shiftKey, this.drawn);
+  }
 }

@@ -1,9 +1,8 @@
 // Files dropped on the page or chosen: worlds and floor plans. The server says what is wrong with one.
 
-import { $ } from "../elements/dom.js";
-import { chosen, dropped, isRecording, play, playFolder } from "../recordings/upload.js";
-import { ended, megabytes } from "../model/sentences.js";
-import { toast } from "../elements/toasts.js";
+import { $ } from "../ui/elements.js";
+import { chosen, dropped, isRecording, play, playFolder } from "./recordings.js";
+import { ended, megabytes, toast } from "../ui/words.js";
 
 const PICTURE = /\.(pgm|png|bmp|jpe?g|ppm|pbm|webp|tiff?|gif)$/i;
 const MOST_BYTES = 16_000_000;
@@ -123,7 +122,7 @@ export class Files {
         : "One pixel of most robot maps is 0.05 m.";
   }
 
-  /** A folder is a recording. @param {() => Promise<import("../recordings/upload.js").Folder>} read @param {number} count of what was dropped */
+  /** A folder is a recording. @param {() => Promise<import("./recordings.js").Folder>} read @param {number} count of what was dropped */
   async offerFolder(read, count = 1) {
     this.files = [];
     this.open();
