@@ -8,19 +8,7 @@ from app.engine.engine import Engine
 from app.engine.watched_trial import CHANGED
 from app.trials.experiment import Experiment, catalogue, check_levels, chosen_trial
 from web import messages as m
-
-ENDS: dict[type, str] = {  # the robot can have one master only
-    m.SetGoal: "somebody gave the robot a goal",
-    m.GoToTag: "somebody gave the robot a goal",
-    m.CancelGoal: "somebody cancelled the robot's goal",
-    m.SetMode: "somebody told the robot what to do",
-    m.Drive: "somebody drove the robot by hand",
-    m.Kidnap: "somebody carried the robot away",
-}
-ALTERS = (
-    m.SetParameter, m.UsePreset, m.SetDoor, m.SetLamp, m.PutBox, m.RemoveBox, m.EditWorld, m.UndoEdit, m.RedoEdit,
-    m.InjectPacket,
-)  # fmt: skip
+from web.messages.commands import CommandModel
 
 
 def watch_experiment(engine: Engine, command: m.WatchExperiment) -> Outcome:
@@ -47,7 +35,7 @@ def watch_experiment(engine: Engine, command: m.WatchExperiment) -> Outcome:
     return None
 
 
-def after_order(engine: Engine, command: object) -> None:
+def after_order(engine: Engine, command: CommandModel) -> None:
     """An order has been carried out: a trial that is being watched may end by it, or become another run."""
     before = engine.run.config_before
     if before is not None and isinstance(command, (m.SetParameter, m.UsePreset)):
@@ -55,18 +43,15 @@ def after_order(engine: Engine, command: object) -> None:
         one = isinstance(command, m.SetParameter)
         engine.run.config_before = before.with_values({command.name: command.value} if one else values_of(command.name))
     trial, lesson = engine.run.trial, engine.run.lesson
-    if trial is None and lesson is None:
-        return
-    if lesson is not None and type(command) in ENDS:
-        lesson.ordered(ENDS[type(command)])
-    elif lesson is not None and isinstance(command, ALTERS):
-        lesson.alter()
-    if trial is None:
-        return
-    if type(command) in ENDS:
-        trial.end(ENDS[type(command)])
-    elif isinstance(command, ALTERS):
-        trial.alter()
+    if command.ends:
+        if lesson is not None:
+            lesson.ordered(command.ends)
+        if trial is not None:
+            trial.end(command.ends)
+    elif command.alters:
+        for watched in (lesson, trial):
+            if watched is not None:
+                watched.alter()
 
 
 def _wrong(experiment: Experiment, command: m.WatchExperiment) -> m.Refused | None:

@@ -1,7 +1,4 @@
-"""Which handler carries out which command. People give commands, the server makes requests; both are handled alike.
-
-What a command needs of the source of the session. A recording has no office, and its robot cannot be told anything.
-"""
+"""Which handler carries out which command. People give commands, the server makes requests; both are handled alike."""
 
 from __future__ import annotations
 
@@ -13,32 +10,20 @@ from app.commands.brain import inject_packet
 from app.commands.experiments import after_order, watch_experiment
 from app.commands.outcome import Later, Outcome, Working
 from app.engine.engine import Engine
-from app.session import Session
 from web import messages as m
+from web.messages.commands import CommandModel, Needs
 
-DRIVEN = "a recording plays: its robot goes where it went, and cannot be sent, driven or carried"
-OFFICE = "a recording plays: it has no office"
-LINK = "a recording plays: a link or a file of it would have to hold the recording; share that instead"
-NEEDS: dict[type, str] = {
-    **dict.fromkeys((m.SetGoal, m.GoToTag, m.CancelGoal, m.SetMode, m.Drive, m.Kidnap), DRIVEN),
-    **dict.fromkeys((m.SetDoor, m.SetLamp, m.PutBox, m.RemoveBox, m.EditWorld, m.UndoEdit, m.RedoEdit), OFFICE),
-    **dict.fromkeys((m.ReadWorld, m.WorldSaved), OFFICE),
-    m.ReadSituation: LINK,
-    m.RunUntil: DRIVEN,
+LACKS: dict[Needs, str] = {
+    "robot": "a recording plays: its robot goes where it went, and cannot be sent, driven or carried",
+    "office": "a recording plays: it has no office",
+    "link": "a recording plays: a link or a file of it would have to hold the recording; share that instead",
 }
-
-
-def lacking(session: Session, command: object) -> m.Refused | None:
-    """Why this session cannot carry out such a command; None: it can."""
-    if session.recording is None or type(command) not in NEEDS:
-        return None
-    kind = getattr(command, "type", type(command).__name__)
-    return m.Refused("type", kind, NEEDS[type(command)])
-
+PAST = "this is the past: go on from here, or come back to now"
+PLAYING = "a situation is being played up to its moment; wait until it is there, or leave it"
 
 Handler = Callable[[Engine, Any], Outcome]  # Any: an instance of the class that is the key in the table
 
-COMMANDS: dict[type, Handler] = {
+COMMANDS: dict[type[CommandModel], Handler] = {
     m.SetGoal: robot.set_goal,
     m.CancelGoal: robot.cancel_goal,
     m.Tag: robot.tag,
@@ -107,21 +92,32 @@ REQUESTS: dict[type, Handler] = {
 def carry_out(engine: Engine, command: m.Command | m.EngineRequest) -> m.Accepted | m.Refused | Later | Working:
     """Carry out a command between two ticks. A refusal names the field, its value and the reason."""
     kind = type(command)
-    refused = lacking(engine.run.session, command)
-    if refused is not None:
-        return refused
-    if kind in REQUESTS:
-        outcome = REQUESTS[kind](engine, command)
-    elif engine.time.past is not None and kind not in time.IN_THE_PAST:
-        outcome = m.Refused("type", getattr(command, "type", ""), time.PAST)
-    elif kind in COMMANDS:
-        outcome = time.waits(engine, command) or _commanded(engine, COMMANDS[kind], command)
-    else:
+    if kind not in COMMANDS and kind not in REQUESTS:
         raise TypeError(f"nobody carries out {getattr(command, 'type', kind.__name__)}")
+    why = _hindrance(engine, command)
+    if why:
+        return m.Refused("type", getattr(command, "type", kind.__name__), why)
+    if isinstance(command, CommandModel):
+        outcome = _commanded(engine, COMMANDS[type(command)], command)
+    else:
+        outcome = REQUESTS[kind](engine, command)
     return m.Accepted(engine.shown.session.tick_count) if outcome is None else outcome
 
 
-def _commanded(engine: Engine, handler: Handler, command: object) -> Outcome:
+def _hindrance(engine: Engine, command: object) -> str:
+    """Why the rules of a command, which it carries itself, forbid it now; empty if they do not."""
+    needs: Needs | None = getattr(command, "needs", None)
+    if needs is not None and engine.run.session.source.world is None:
+        return LACKS[needs]
+    if isinstance(command, CommandModel):
+        if engine.time.past is not None and not command.in_the_past:
+            return PAST
+        if engine.run.ahead is not None and engine.run.ahead.state == "playing" and not command.while_playing:
+            return PLAYING
+    return ""
+
+
+def _commanded(engine: Engine, handler: Handler, command: CommandModel) -> Outcome:
     """Call the handler, then rebuild what the snapshot shows and log every new warning of the config."""
     run, before = engine.run, engine.run.session.warnings
     outcome = handler(engine, command)

@@ -22,14 +22,6 @@ from app.situations import LedHere, Situation
 from ratslam_core import RatSlam
 from web import messages as m
 
-PAST = "this is the past: go on from here, or come back to now"
-IN_THE_PAST = {  # the commands that change nothing, or begin another run
-    m.Pause, m.Resume, m.Step, m.StepStage, m.SetSpeed, m.Inspect, m.Reset, m.WatchExperiment,
-    m.Seek, m.BackToNow, m.GoOnFromHere, m.GoOnWithout, m.ChangeBranch, m.CompareBranch, m.Loop, m.LeaveSituation,
-    m.PutBookmark, m.RemoveBookmark,
-    m.BeginLesson, m.Predict, m.Vote, m.ShowLesson, m.LessonAgain, m.EndLesson, m.RunUntil,
-}  # fmt: skip
-
 
 def seek(engine: Engine, command: m.Seek) -> Outcome:
     """Looking at the past pauses the present; while the past plays, it plays on from the new moment."""
@@ -142,10 +134,6 @@ def remove_bookmark(engine: Engine, command: m.RemoveBookmark) -> Outcome:
     return attempt("tick", command.tick, remove)
 
 
-PLAYING = "a situation is being played up to its moment; wait until it is there, or leave it"
-WHILE_PLAYING = {m.LeaveSituation, m.Inspect, m.SetSpeed, m.Reset, m.WatchExperiment}
-
-
 def read_situation(engine: Engine, _: m.ReadSituation) -> Outcome:
     first, orders = engine.time.led_here()
     began, brain, earlier = _beginning_of(first)
@@ -167,14 +155,6 @@ def leave_situation(engine: Engine, _: m.LeaveSituation) -> Outcome:
         return m.Refused("type", "leave_situation", "no situation is being played up to its moment")
     engine.leave_situation()
     return None
-
-
-def waits(engine: Engine, command: object) -> m.Refused | None:
-    """While a situation is played, nothing may change it; the orders are its own."""
-    ahead = engine.run.ahead
-    if ahead is None or ahead.state != "playing" or type(command) in WHILE_PLAYING:
-        return None
-    return m.Refused("type", getattr(command, "type", ""), PLAYING)
 
 
 def _beginning_of(run: Run) -> tuple[Beginning, RatSlam | Path | None, list[Order]]:

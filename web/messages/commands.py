@@ -1,17 +1,12 @@
 """The commands that people give the engine: pydantic models, strict and closed. Names and docstrings are the HTTP API's.
 
-What all commands are: pydantic models, strict and closed; and what many of them hold.
-
-The commands that change the office: doors, lamps, boxes, the robot's sensors in it, and edits of the world itself.
-
-The commands of the timeline: moments of the past, branches, loops.
-
-The commands of lessons, and running until something happens.
+A new command is its model here, in the union at the end; its handler in the file of app/commands that its noun belongs to,
+with a row in table.py there; and what gives it on the page.
 """
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal, Unpack
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, WithJsonSchema
 from pydantic_core import PydanticCustomError
@@ -25,14 +20,39 @@ Label = Annotated[str, Field(max_length=64), AfterValidator(one_line)]
 EngineName = Literal["paper", "paper-2005", "paper-2006", "ours"]  # whose rules; "paper": those of an experiment's own
 
 
+Needs = Literal["robot", "office", "link"]
+
+
 class CommandModel(BaseModel):
+    """What all commands are: strict and closed. Each carries its own rules, as `class SetGoal(CommandModel, needs="robot")`.
+
+    needs: what it needs of the session's source: a robot that can be driven, an office, or that a link can tell all of it.
+    in_the_past: may be given while a moment of the past is shown, since it changes nothing, or begins another run.
+    while_playing: may be given while a situation is played up to its moment.
+    ends: why a trial that is watched ends by it, in words: the robot can have one master only.
+    alters: by it, that trial is another run from there on.
+    """
+
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False)
+    needs: ClassVar[Needs | None]
+    in_the_past: ClassVar[bool]
+    while_playing: ClassVar[bool]
+    ends: ClassVar[str]
+    alters: ClassVar[bool]
+
+    def __init_subclass__(
+        cls, *, needs: Needs | None = None, in_the_past: bool = False, while_playing: bool = False, ends: str = "",
+        alters: bool = False, **config: Unpack[ConfigDict],
+    ) -> None:  # fmt: skip
+        super().__init_subclass__(**config)
+        cls.needs, cls.in_the_past, cls.while_playing = needs, in_the_past, while_playing
+        cls.ends, cls.alters = ends, alters
 
 
 _Size = Annotated[float, Field(ge=0.05, le=20.0)]
 
 
-class SetDoor(CommandModel):
+class SetDoor(CommandModel, needs="office", alters=True):
     """Open or shut a door of the office. It moves from the next tick on, and waits for anyone who stands in it."""
 
     type: Literal["set_door"]
@@ -40,13 +60,13 @@ class SetDoor(CommandModel):
     open: bool
 
 
-class SetLamp(CommandModel):
+class SetLamp(CommandModel, needs="office", alters=True):
     type: Literal["set_lamp"]
     name: Name
     on: bool
 
 
-class PutBox(CommandModel):
+class PutBox(CommandModel, needs="office", alters=True):
     """Put a box down (office frame, metres). Refused where it would cover the robot. A reset removes it."""
 
     type: Literal["put_box"]
@@ -59,12 +79,12 @@ class PutBox(CommandModel):
     angle_rad: Finite = 0.0
 
 
-class RemoveBox(CommandModel):
+class RemoveBox(CommandModel, needs="office", alters=True):
     type: Literal["remove_box"]
     name: Name
 
 
-class UsePreset(CommandModel):
+class UsePreset(CommandModel, alters=True):
     """Set the robot's sensors and encoders to a preset: "Pioneer 2DXE 2004" or "ideal"."""
 
     type: Literal["use_preset"]
@@ -88,7 +108,7 @@ class EditStep(CommandModel):
     item: dict[str, Any] | None = None  # the new item; a wall without a colour gets looks of its own
 
 
-class EditWorld(CommandModel):
+class EditWorld(CommandModel, needs="office", alters=True):
     """Change the office under the running robot: all steps or none. Refused when the world would not be valid, when the
     robot would be covered, or when the office is no longer the edition that the editor saw. Undone as one."""
 
@@ -97,13 +117,13 @@ class EditWorld(CommandModel):
     edition: int | None = None
 
 
-class UndoEdit(CommandModel):
+class UndoEdit(CommandModel, needs="office", alters=True):
     """Undo the last change of the office."""
 
     type: Literal["undo_edit"]
 
 
-class RedoEdit(CommandModel):
+class RedoEdit(CommandModel, needs="office", alters=True):
     """Redo the change that was undone last."""
 
     type: Literal["redo_edit"]
@@ -116,7 +136,7 @@ EditOrder = EditWorld | UndoEdit | RedoEdit
 _Moment = Annotated[float, Field(ge=0, le=1e9)]
 
 
-class Seek(CommandModel):
+class Seek(CommandModel, in_the_past=True):
     """Pause and show a moment of the run, by simulated time or by tick. From the last one on: the present. Changes nothing."""
 
     type: Literal["seek"]
@@ -124,19 +144,19 @@ class Seek(CommandModel):
     tick: Annotated[int, Field(ge=0, le=10**9)] | None = None
 
 
-class BackToNow(CommandModel):
+class BackToNow(CommandModel, in_the_past=True):
     """Show the present again, paused."""
 
     type: Literal["back_to_now"]
 
 
-class GoOnFromHere(CommandModel):
+class GoOnFromHere(CommandModel, in_the_past=True):
     """Make the moment of the past that is shown the present of another branch. The run as it was stays as its own branch."""
 
     type: Literal["go_on_from_here"]
 
 
-class GoOnWithout(CommandModel):
+class GoOnWithout(CommandModel, in_the_past=True):
     """Go back to before what led to this event, and go on in another branch in which the brain has forgotten the views that
     led to it."""
 
@@ -144,21 +164,21 @@ class GoOnWithout(CommandModel):
     event: Annotated[int, Field(ge=1)]
 
 
-class ChangeBranch(CommandModel):
+class ChangeBranch(CommandModel, in_the_past=True):
     """Go on with another branch, from its end."""
 
     type: Literal["change_branch"]
     number: Annotated[int, Field(ge=1, le=1000)]
 
 
-class CompareBranch(CommandModel):
+class CompareBranch(CommandModel, in_the_past=True):
     """Show another branch beside the live one, at the same time, and say where they differ first. Without a number: none."""
 
     type: Literal["compare_branch"]
     number: Annotated[int, Field(ge=1, le=1000)] | None = None
 
 
-class Loop(CommandModel):
+class Loop(CommandModel, in_the_past=True):
     """Play the past between two times (simulated seconds) again and again. Without them: no longer."""
 
     type: Literal["loop"]
@@ -166,7 +186,7 @@ class Loop(CommandModel):
     end_s: _Moment | None = None
 
 
-class PutBookmark(CommandModel):
+class PutBookmark(CommandModel, in_the_past=True):
     """Name the moment that is shown, to come back to it; with a tick: give the bookmark there another name."""
 
     type: Literal["put_bookmark"]
@@ -174,12 +194,12 @@ class PutBookmark(CommandModel):
     tick: Annotated[int, Field(ge=0, le=10**9)] | None = None
 
 
-class RemoveBookmark(CommandModel):
+class RemoveBookmark(CommandModel, in_the_past=True):
     type: Literal["remove_bookmark"]
     tick: Annotated[int, Field(ge=0, le=10**9)]
 
 
-class LeaveSituation(CommandModel):
+class LeaveSituation(CommandModel, in_the_past=True, while_playing=True):
     """Stop playing a situation that was opened, before it is at its moment. The run that it took the place of goes on, paused."""
 
     type: Literal["leave_situation"]
@@ -199,7 +219,7 @@ TimeOrder = (
 )
 
 
-class BeginLesson(CommandModel):
+class BeginLesson(CommandModel, in_the_past=True):
     """Begin a lesson, by its name in /api/lessons, in a run of its own. seed: another than the lesson's."""
 
     type: Literal["begin_lesson"]
@@ -207,7 +227,7 @@ class BeginLesson(CommandModel):
     seed: Annotated[int, Field(ge=0, lt=2**31)] | None = None
 
 
-class Predict(CommandModel):
+class Predict(CommandModel, in_the_past=True):
     """The prediction that is compared with what happens: an option by its number, from 0, or a point (m) on the plate on
     which the lesson asks for one. It can be changed until it is shown."""
 
@@ -217,7 +237,7 @@ class Predict(CommandModel):
     y: Finite | None = None
 
 
-class Vote(CommandModel):
+class Vote(CommandModel, in_the_past=True):
     """As `predict`, by one of a class: voter is a text that each page makes up for itself, and each voter counts once.
     sender: the address it comes from, which the server tells."""
 
@@ -230,25 +250,25 @@ class Vote(CommandModel):
     y: Finite | None = None
 
 
-class ShowLesson(CommandModel):
+class ShowLesson(CommandModel, in_the_past=True):
     """Let it happen; also without a prediction. Between two rounds: begin the next one."""
 
     type: Literal["show_lesson"]
 
 
-class LessonAgain(CommandModel):
+class LessonAgain(CommandModel, in_the_past=True):
     """Begin the lesson anew, with the same seed."""
 
     type: Literal["lesson_again"]
 
 
-class EndLesson(CommandModel):
+class EndLesson(CommandModel, in_the_past=True):
     """Leave the lesson. Its run goes on, or stays paused, as it is."""
 
     type: Literal["end_lesson"]
 
 
-class RunUntil(CommandModel):
+class RunUntil(CommandModel, needs="robot", in_the_past=True):
     """Run as fast as possible until this happens, and pause exactly then; or until `within_s` simulated seconds have passed.
 
     count: of packets; place: a place of the office by name, or x and y (m, office frame), which the robot comes near.
@@ -266,7 +286,7 @@ class RunUntil(CommandModel):
 LessonOrder = BeginLesson | Predict | Vote | ShowLesson | LessonAgain | EndLesson | RunUntil
 
 
-class SetGoal(CommandModel):
+class SetGoal(CommandModel, needs="robot", ends="somebody gave the robot a goal"):
     """Go to this place of the map (metres, map frame): to the quickest of all experiences that stand for it."""
 
     type: Literal["set_goal"]
@@ -274,7 +294,7 @@ class SetGoal(CommandModel):
     y: Finite
 
 
-class CancelGoal(CommandModel):
+class CancelGoal(CommandModel, needs="robot", ends="somebody cancelled the robot's goal"):
     type: Literal["cancel_goal"]
 
 
@@ -290,19 +310,19 @@ class Untag(CommandModel):
     name: Name
 
 
-class GoToTag(CommandModel):
+class GoToTag(CommandModel, needs="robot", ends="somebody gave the robot a goal"):
     """Go to the place that was given this name."""
 
     type: Literal["go_to_tag"]
     name: Name
 
 
-class SetMode(CommandModel):
+class SetMode(CommandModel, needs="robot", ends="somebody told the robot what to do"):
     type: Literal["set_mode"]
     mode: Literal["explore", "manual", "goal"]
 
 
-class Drive(CommandModel):
+class Drive(CommandModel, needs="robot", ends="somebody drove the robot by hand"):
     """Drive by hand. m/s forwards, rad/s counter-clockwise. Stops 0.3 s after the last such command."""
 
     type: Literal["drive"]
@@ -310,7 +330,7 @@ class Drive(CommandModel):
     yaw_rate: Annotated[float, Field(ge=-1.6, le=1.6)]
 
 
-class Kidnap(CommandModel):
+class Kidnap(CommandModel, needs="robot", ends="somebody carried the robot away"):
     """Put the robot elsewhere (office frame) without telling it. Without a place, a random free one is taken."""
 
     type: Literal["kidnap"]
@@ -319,15 +339,15 @@ class Kidnap(CommandModel):
     heading_rad: Finite | None = None
 
 
-class Pause(CommandModel):
+class Pause(CommandModel, in_the_past=True):
     type: Literal["pause"]
 
 
-class Resume(CommandModel):
+class Resume(CommandModel, in_the_past=True):
     type: Literal["resume"]
 
 
-class Step(CommandModel):
+class Step(CommandModel, in_the_past=True):
     """Pause and advance by this many ticks of 0.1 s."""
 
     type: Literal["step"]
@@ -350,14 +370,14 @@ def _speed(factor: float) -> float:
     return factor
 
 
-class SetSpeed(CommandModel):
+class SetSpeed(CommandModel, in_the_past=True, while_playing=True):
     """Simulated seconds per second; 0 = as fast as possible."""
 
     type: Literal["set_speed"]
     factor: Annotated[float, AfterValidator(_speed), WithJsonSchema(_SPEED_SCHEMA)]
 
 
-class Reset(CommandModel):
+class Reset(CommandModel, in_the_past=True, while_playing=True):
     """Start anew. Fields that are left out keep their values."""
 
     type: Literal["reset"]
@@ -365,20 +385,20 @@ class Reset(CommandModel):
     seed: Annotated[int, Field(ge=0, le=2**32 - 1)] | None = None
 
 
-class SetParameter(CommandModel):
+class SetParameter(CommandModel, alters=True):
     type: Literal["set_parameter"]
     name: Label
     value: float | int | bool | Label
 
 
-class StepStage(CommandModel):
+class StepStage(CommandModel, in_the_past=True):
     """Pause and show the next stage of a tick, or the previous one. After the last stage the next tick begins."""
 
     type: Literal["step_stage"]
     back: bool = False
 
 
-class InjectPacket(CommandModel):
+class InjectPacket(CommandModel, alters=True):
     """Add a packet of activity at a place in the pose cells (cells, radians), to watch it compete. No sensor supports it.
 
     share: of all activity afterwards.
@@ -391,7 +411,7 @@ class InjectPacket(CommandModel):
     share: Annotated[float, Field(ge=0.01, le=0.95)] = 0.45
 
 
-class Inspect(CommandModel):
+class Inspect(CommandModel, in_the_past=True, while_playing=True):
     """Choose what everybody inspects: an experience, a view, the pose cells at x', y', or why an event happened. Without
     any of them: nothing.
 
@@ -406,7 +426,7 @@ class Inspect(CommandModel):
     event: Annotated[int, Field(ge=1)] | None = None
 
 
-class WatchExperiment(CommandModel):
+class WatchExperiment(CommandModel, in_the_past=True, while_playing=True):
     """Begin a trial of an experiment and watch it. What is left out is as the experiment's file says.
 
     levels: one label of each axis. trial: the id of a trial that was run, to be told if it would not be the same run today.

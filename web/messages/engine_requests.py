@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from concurrent.futures import Future
 from dataclasses import dataclass
+from typing import ClassVar
 
 from sim2d.world.world import World
-from web.messages.commands import Command
+from web.messages.commands import Command, Needs
 from web.messages.situation import OpenSituation, ReadSituation
 
 
@@ -64,6 +65,8 @@ class PlayRecording:
 class ReadWorld:
     """The answer's `result` is the World as it is now and its OfficeEdition."""
 
+    needs: ClassVar[Needs] = "office"
+
 
 @dataclass(frozen=True, slots=True)
 class ReadFiled:
@@ -84,6 +87,7 @@ class OpenWorld:
 class WorldSaved:
     """The world that was read has been saved under the name of `world`."""
 
+    needs: ClassVar[Needs] = "office"
     was: World
     world: World
 

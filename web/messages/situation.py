@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 
 from disk.words import one_line
+from web.messages.commands import Needs
 
 Number = Annotated[float, Field(ge=-1e4, le=1e4, allow_inf_nan=False)]
 Vector = tuple[Number, Number, Number]
@@ -68,6 +69,8 @@ class SituationView:
 @dataclass(frozen=True, slots=True)
 class ReadSituation:
     """The answer's `result` is what leads to the moment that is shown, of the engine's own class."""
+
+    needs: ClassVar[Needs] = "link"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
