@@ -43,7 +43,10 @@ def add_experiment(commands: Verbs) -> None:
         "--store", type=Path, metavar="FILE", help="where trials are kept (default ~/.ratslam/experiments.sqlite)"
     )
     parser.add_argument(
-        "--parquet", type=Path, metavar="FILE", help="also write all stored trials of the experiment to FILE"
+        "--csv",
+        type=Path,
+        metavar="FILE",
+        help="also write all stored trials of the experiment, of every version, to FILE",
     )
     parser.add_argument(
         "--port",
@@ -94,9 +97,9 @@ def _check(args: argparse.Namespace) -> None:
         raise ValueError(
             f"--workers {args.workers} are processes on this machine; the cluster of --scheduler has its own"
         )
-    if args.what == ["all"] and args.parquet is not None:
-        raise ValueError("--parquet takes the trials of one experiment; name it")
-    require_writable("--parquet", args.parquet)
+    if args.what == ["all"] and args.csv is not None:
+        raise ValueError("--csv takes the trials of one experiment; name it")
+    require_writable("--csv", args.csv)
 
 
 def _open(trial_id: str, args: argparse.Namespace) -> int:

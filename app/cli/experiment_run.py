@@ -15,7 +15,7 @@ from rich.console import Console
 
 from app.cli.experiment import check_whole
 from app.cli.progress import compile_first
-from app.experiments.export import write_parquet
+from app.experiments.export import write_csv
 from app.experiments.live import LiveTable
 from app.experiments.report import Report, make_folder, write_index, write_outputs
 from app.experiments.runner import Duration, duration_of, pending, run_trials, time_words
@@ -47,9 +47,9 @@ def run_one(name: str, args: argparse.Namespace) -> int:
         plan = _planned(experiment, args, store)
         _run(plan, args, store, workers)
         _finish(plan, args, store, workers, folder, _command(name, args))
-        if args.parquet is not None:
-            write_parquet(args.parquet, experiment, store.of_experiment(experiment.name))
-            print(f"all stored trials: {args.parquet}")
+        if args.csv is not None:
+            write_csv(args.csv, experiment, store.of_experiment(experiment.name))
+            print(f"all stored trials: {args.csv}")
     return 0
 
 

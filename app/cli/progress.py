@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable
 from typing import TypeVar
 
@@ -14,15 +13,19 @@ def with_progress(seconds: float, work: Callable[[Callable[[float, str], None]],
 
     work: is given a function to report progress by: simulated seconds since the last call, and what is being done.
     """
-    from tqdm import tqdm
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
 
-    with tqdm(total=round(seconds), unit="s", unit_scale=True, disable=not sys.stderr.isatty()) as bar:
+    console = Console(stderr=True)
+    columns = TextColumn("{task.description}"), BarColumn(), TaskProgressColumn(), TimeRemainingColumn()
+    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
+        task = bar.add_task("", total=seconds)
+        done_s = 0.0
 
         def progress(simulated_s: float, what: str) -> None:
-            bar.set_description(what, refresh=False)
-            if bar.n + simulated_s > (bar.total or 0):
-                bar.total = round(bar.n + simulated_s)
-            bar.update(simulated_s)
+            nonlocal done_s
+            done_s += simulated_s
+            bar.update(task, description=what, completed=done_s, total=max(seconds, done_s))
 
         return work(progress)
 

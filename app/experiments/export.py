@@ -6,13 +6,11 @@ import csv
 import io
 import re
 from collections.abc import Sequence
-from importlib import import_module
 from pathlib import Path
-from typing import Any
 
 from app.experiments.store import StoredTrial
 from app.trials.experiment import Experiment
-from disk import whole_file, write_whole
+from disk import write_whole
 
 _FIRST = ["id", "engine"]
 _LAST = ["seed", "version", "quick", "simulated_s", "wall_s", "moment_s", "moment", "error"]
@@ -37,24 +35,6 @@ def _no_formula(cell: Cell) -> Cell:
     if not isinstance(cell, str) or not cell.startswith(_FORMULA) or _NUMBER.fullmatch(cell):
         return cell
     return f"'{cell}"
-
-
-def write_parquet(path: Path, experiment: Experiment, trials: Sequence[StoredTrial]) -> None:
-    """OSError names the file. What a trial does not have is null."""
-    pyarrow: Any = import_module("pyarrow")  # it has no types
-    parquet: Any = import_module("pyarrow.parquet")
-    columns, rows = table_of(experiment, trials)
-    types = {"seed": pyarrow.int64(), "quick": pyarrow.bool_()}
-    numbers = {"simulated_s", "wall_s", "moment_s", *columns[len(columns) - len(_scores(trials)) :]}
-    arrays = {
-        column: pyarrow.array(
-            [row[at] for row in rows],
-            types.get(column, pyarrow.float64() if column in numbers else pyarrow.string()),
-        )
-        for at, column in enumerate(columns)
-    }
-    with whole_file(path) as file:
-        parquet.write_table(pyarrow.table(arrays), file)
 
 
 def table_of(experiment: Experiment, trials: Sequence[StoredTrial]) -> tuple[list[str], list[list[Cell]]]:

@@ -26,7 +26,8 @@ from contextlib import closing
 from dataclasses import asdict
 from pathlib import Path
 
-from tqdm import tqdm
+from rich.console import Console
+from rich.progress import track
 
 from benchmarks.mutants.faults import faults
 from benchmarks.mutants.operators import Mutant, mutants_of
@@ -100,7 +101,7 @@ class Bench:
 
     def _tried(self, tests: dict[Mutant, tuple[str, ...]]) -> Iterator[tuple[Mutant, list[str]]]:
         tried = {self._pool.submit(self._found_by, mutant, own): mutant for mutant, own in tests.items()}
-        for one in tqdm(as_completed(tried), total=len(tried), unit="fault", mininterval=10, file=sys.stderr):
+        for one in track(as_completed(tried), "faults", len(tried), console=Console(stderr=True)):
             yield tried[one], one.result()
             self._file.write_text(json.dumps(self._found, indent=1), encoding="utf-8")
 

@@ -65,14 +65,9 @@ def _row(name: str, options: Options, workers: int) -> dict[str, Any]:
 
 
 def _make(jobs: list[Job], workers: int, done: list[tuple[Job, Report]]) -> None:
-    from tqdm import tqdm
-
-    with tqdm(total=len(jobs), unit="run", disable=not sys.stderr.isatty()) as bar:
-        for job, report in run_all(jobs, workers):
-            done.append((job, report))
-            bar.write(f"  {of_run(report)}", file=sys.stdout)
-            sys.stdout.flush()
-            bar.update()
+    for job, report in run_all(jobs, workers):
+        done.append((job, report))
+        print(f"  {len(done)} of {len(jobs)}: {of_run(report)}", flush=True)
 
 
 def _judged(name: str, jobs: list[Job], done: list[tuple[Job, Report]]) -> dict[str, Any]:

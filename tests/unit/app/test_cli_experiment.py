@@ -63,8 +63,8 @@ def test_what_is_wrong_is_said(capsys: pytest.CaptureFixture[str], subtests: pyt
         ("table --trials 0", "--trials must be from 1 to 100000, got 0"),
         ("table --workers 0", "--workers must be from 1 to 1024, got 0"),
         ("table --workers 2 --scheduler tcp://127.0.0.1:1", "the cluster of --scheduler has its own"),
-        ("all --parquet all.parquet", "--parquet takes the trials of one experiment; name it"),
-        ("table --parquet nowhere/x.parquet", "--parquet nowhere/x.parquet: there is no folder"),
+        ("all --csv all.csv", "--csv takes the trials of one experiment; name it"),
+        ("table --csv nowhere/x.csv", "--csv nowhere/x.csv: there is no folder"),
         ("check missing.toml", "missing.toml: No such file or directory"),
     ):
         with subtests.test(msg=words):
@@ -102,14 +102,14 @@ def test_a_trial_opens_at_the_moment_that_decided_it(
 def test_a_file_of_ones_own_runs_once_and_leaves_table_figures_and_page(
     capsys: pytest.CaptureFixture[str], own: Path, store: Path
 ) -> None:
-    command = ["experiment", str(own), "--quick", "--engine", "ours", "--workers", "2", "--parquet", "own.parquet"]
+    command = ["experiment", str(own), "--quick", "--engine", "ours", "--workers", "2", "--csv", "own.csv"]
     assert main(command) == 0
     first = capsys.readouterr()
     assert "narrow-view: 1 trials to run" in first.err
     folder = own.parent / "experiments" / "narrow-view"
     assert (folder / "narrow-view.html").read_text(encoding="utf-8").startswith("<!doctype html>")
     assert {path.suffix for path in (folder / "figures").iterdir()} == {".svg", ".png"}
-    assert (own.parent / "own.parquet").is_file()
+    assert (own.parent / "own.csv").is_file()
     (trial,) = read_experiment(own).make_trials(["ours"], quick=True)
     assert (folder / "narrow-view.csv").read_text(encoding="utf-8").splitlines()[1].startswith(trial.id)
     with Store(store) as kept:

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from app.experiments.export import table_of, write_csv, write_parquet
+from app.experiments.export import table_of, write_csv
 from app.experiments.live import LiveTable
 from app.experiments.opening import open_trial
 from app.experiments.runner import duration_of, time_words
@@ -71,8 +71,6 @@ def test_figures_are_told_with_their_intervals_and_durations_in_words() -> None:
 
 
 def test_a_table_has_a_row_for_each_trial_and_a_column_for_each_axis_and_score(tmp_path: Path) -> None:
-    from pyarrow import parquet
-
     write_csv(tmp_path / "small.csv", SMALL, TRIALS)
     with (tmp_path / "small.csv").open() as file:
         rows = list(csv.DictReader(file))
@@ -80,15 +78,9 @@ def test_a_table_has_a_row_for_each_trial_and_a_column_for_each_axis_and_score(t
     assert (last["id"], last["size"], last["engine"], last["seed"]) == ("ours-large-1", "large", "ours", "1")
     assert (last["error_m"], last["reached"], last["moment"]) == ("0.5", "1", "the end")
     assert (failed["error_m"], failed["error"]) == ("", "ValueError: no, never")
-    write_parquet(tmp_path / "small.parquet", SMALL, TRIALS)
     columns, rows = table_of(SMALL, TRIALS)
     assert len(set(columns)) == len(columns)
     assert dict(zip(columns, rows[4], strict=True))["seed (score)"] == 7.0
-    table = parquet.read_table(tmp_path / "small.parquet")
-    assert table.column_names == columns
-    assert [[row[name] for name in columns] for row in table.to_pylist()] == rows
-    assert str(table.schema.field("seed").type) == "int64"
-    assert str(table.schema.field("error_m").type) == "double"
 
 
 # ------------------------------------------------------------ while they run
