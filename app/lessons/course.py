@@ -1,45 +1,16 @@
-"""A session taken through the steps of a lesson: those of trials, a packet put in by hand, and a click on the map.
-
-The steps of a lesson: those of trials (app/trials/steps.py), and two that a trial has no use for.
-"""
+"""A session taken through the steps of a lesson: those of trials, a packet put in by hand, and a click on the map."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from typing import Annotated, Literal
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field
 
+from app.lessons.schema import Click, LessonStep, Packet
 from app.session import Session
 from app.trials.course import Course
-from app.trials.steps import Metres, Seconds, Step, Where, place_of
-
-
-class Packet(BaseModel):
-    """A packet of activity is put into the pose cells by hand, so far from the winner (cells, layers). No sensor asks for it."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
-
-    do: Literal["packet"]
-    away: tuple[int, int]  # cells along x' and y'
-    layers: int = 0
-    share: Annotated[float, Field(ge=0.01, le=0.95)] = 0.4  # of all activity afterwards
-
-
-class Click(BaseModel):
-    """Somebody clicks the map at what stands for this place, and the robot goes there, or gives up after so long."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
-
-    do: Literal["click"]
-    place: Where
-    timeout_s: Seconds = 120.0
-    near_m: Metres = 1.0
-
-
-LessonStep = Annotated[Step | Packet | Click, Field(discriminator="do")]
+from app.trials.steps import place_of
 
 
 class LessonCourse(Course):

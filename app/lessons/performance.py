@@ -12,11 +12,11 @@ from dataclasses import dataclass
 from typing import Literal
 
 from app.lessons.conditions import Waiting
-from app.lessons.course import Click, LessonCourse, LessonStep, Packet
+from app.lessons.course import LessonCourse
 from app.lessons.findings import Values, shown, told
 from app.lessons.marks import Marks
 from app.lessons.notes import Notes
-from app.lessons.schema import Lesson, Plate
+from app.lessons.schema import Click, Lesson, LessonStep, Packet, Plate
 from app.lessons.second import SecondNotes, begin_second
 from app.session import Session
 from app.trials.experiment import duration_s

@@ -12,10 +12,9 @@ from app.config import Config
 from app.config.pairs import Pair, pair_of, require_pair
 from app.config.presets import values_of
 from app.lessons.conditions import Until
-from app.lessons.course import LessonStep
 from app.lessons.findings import Finding
 from app.lessons.second import OF_SECOND
-from app.trials.steps import Line, Seconds, Text, Values, WorldName
+from app.trials.steps import Line, Metres, Seconds, Step, Text, Values, Where, WorldName
 from disk.words import lines
 from web.messages import Command
 from web.messages.commands import Name
@@ -28,6 +27,27 @@ _COMMAND: TypeAdapter[Command] = TypeAdapter(Command)
 
 class _Part(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+
+
+class Packet(_Part):
+    """A packet of activity is put into the pose cells by hand, so far from the winner (cells, layers). No sensor asks for it."""
+
+    do: Literal["packet"]
+    away: tuple[int, int]  # cells along x' and y'
+    layers: int = 0
+    share: Annotated[float, Field(ge=0.01, le=0.95)] = 0.4  # of all activity afterwards
+
+
+class Click(_Part):
+    """Somebody clicks the map at what stands for this place, and the robot goes there, or gives up after so long."""
+
+    do: Literal["click"]
+    place: Where
+    timeout_s: Seconds = 120.0
+    near_m: Metres = 1.0
+
+
+LessonStep = Annotated[Step | Packet | Click, Field(discriminator="do")]
 
 
 def _known(parameter: str) -> str:
