@@ -7,8 +7,8 @@ import math
 import numpy as np
 
 from app.lessons.conditions import SHARE
-from app.lessons.course import LessonCourse
 from app.lessons.findings import Values
+from app.trials.course import Course
 from app.trials.measures import Phenomena, TurnOfCells, WayTaken
 from app.views.history import History
 from ratslam_core import Packet
@@ -22,7 +22,7 @@ COUNTED = ("snap", "closure")
 class Notes:
     """Made when the showing begins; call `note` after each tick of it."""
 
-    def __init__(self, course: LessonCourse, history: History) -> None:
+    def __init__(self, course: Course, history: History) -> None:
         session = course.session
         map_ = session.brain.experience_map
         self._course, self._session, self._history = course, session, history

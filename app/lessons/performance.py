@@ -12,13 +12,13 @@ from dataclasses import dataclass
 from typing import Literal
 
 from app.lessons.conditions import Waiting
-from app.lessons.course import LessonCourse
 from app.lessons.findings import Values, shown, told
 from app.lessons.marks import Marks
 from app.lessons.notes import Notes
-from app.lessons.schema import Click, Lesson, LessonStep, Packet, Plate
+from app.lessons.schema import Lesson, Plate
 from app.lessons.second import SecondNotes, begin_second
 from app.session import Session
+from app.trials.course import Course
 from app.trials.experiment import duration_s
 from app.views.history import History
 from ratslam_core import Pose2
@@ -46,10 +46,10 @@ class Performance:
         self.phase: Phase = "scene"
         self.doing = "the scene is set"
         self._shown = [*(lesson.rounds[number].steps if lesson.rounds else []), *lesson.show.steps]
-        self.course = LessonCourse(session, [*lesson.scene.steps, *self._shown])
+        self.course = Course(session, [*lesson.scene.steps, *self._shown])
         self._told = 0  # of the course's moments
         self._ticks: Iterator[str] = self.course.ticks_of(lesson.scene.steps)
-        self._scene_s = max(0.1, sum(map(_seconds, lesson.scene.steps)))
+        self._scene_s = max(0.1, sum(map(duration_s, lesson.scene.steps)))
         self._waiting: Waiting | None = None
         self._until_s = self._began_s = 0.0
         self._met_s = math.inf
@@ -139,7 +139,7 @@ class Performance:
 
     @property
     def _most_s(self) -> float:
-        about = sum(map(_seconds, self._shown))
+        about = sum(map(duration_s, self._shown))
         return min(self.lesson.show.limit_s, about) if about > 0 else self.lesson.show.limit_s
 
     def _is_over(self) -> bool:
@@ -162,8 +162,8 @@ class Performance:
 
 def shown_s(lesson: Lesson) -> float:
     """About how long what is shown takes in all its rounds, in simulated seconds."""
-    each = sum(map(_seconds, lesson.show.steps))
-    own = sum(_seconds(step) for one in lesson.rounds for step in one.steps)
+    each = sum(map(duration_s, lesson.show.steps))
+    own = sum(duration_s(step) for one in lesson.rounds for step in one.steps)
     return min(lesson.show.limit_s, each) * lesson.round_count + own
 
 
@@ -201,13 +201,6 @@ def _run_until(performance: Performance, phase: Phase) -> None:
 def rounds_of(performances: Sequence[Performance]) -> list[tuple[str, Values]]:
     """Label and values of each round that is over, or of each of two brains."""
     return [found for each in performances for found in each.found]
-
-
-def _seconds(step: LessonStep) -> float:
-    """About how long a step takes."""
-    if isinstance(step, Packet):
-        return 0.0
-    return 30.0 if isinstance(step, Click) else duration_s(step)
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,7 +14,7 @@ from app.config.presets import values_of
 from app.lessons.conditions import Until
 from app.lessons.findings import Finding
 from app.lessons.second import OF_SECOND
-from app.trials.steps import Line, Metres, Seconds, Step, Text, Values, Where, WorldName
+from app.trials.steps import Line, Seconds, Step, Text, Values, WorldName
 from disk.words import lines
 from web.messages import Command
 from web.messages.commands import Name
@@ -27,27 +27,6 @@ _COMMAND: TypeAdapter[Command] = TypeAdapter(Command)
 
 class _Part(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
-
-
-class Packet(_Part):
-    """A packet of activity is put into the pose cells by hand, so far from the winner (cells, layers). No sensor asks for it."""
-
-    do: Literal["packet"]
-    away: tuple[int, int]  # cells along x' and y'
-    layers: int = 0
-    share: Annotated[float, Field(ge=0.01, le=0.95)] = 0.4  # of all activity afterwards
-
-
-class Click(_Part):
-    """Somebody clicks the map at what stands for this place, and the robot goes there, or gives up after so long."""
-
-    do: Literal["click"]
-    place: Where
-    timeout_s: Seconds = 120.0
-    near_m: Metres = 1.0
-
-
-LessonStep = Annotated[Step | Packet | Click, Field(discriminator="do")]
 
 
 def _known(parameter: str) -> str:
@@ -95,7 +74,7 @@ class Scene(_Part):
     view: Literal["all", "office", "pose", "map"] = "all"
     tab: Literal["senses", "memory", "truth", "tick", "inspect", "office", "tune"] = "memory"
     speed: Annotated[float, Field(ge=0.25, le=16)] = 1.0
-    steps: list[LessonStep] = []
+    steps: list[Step] = []
     compare: PairName | None = None  # a second brain hears the same from the beginning on
 
     @property
@@ -109,7 +88,7 @@ class Round(_Part):
 
     label: Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9 .,%/-]{0,39}$")]
     set: Settings = {}
-    steps: list[LessonStep] = []  # at the beginning of what is shown
+    steps: list[Step] = []  # at the beginning of what is shown
 
 
 class _Bounds(BaseModel):
@@ -168,7 +147,7 @@ class Show(_Part):
     marks: kinds of events that are marked where they happen. explain: the last event of this kind is inspected at the end.
     """
 
-    steps: Annotated[list[LessonStep], Field(min_length=1)]
+    steps: Annotated[list[Step], Field(min_length=1)]
     until: Until | None = None
     then_s: Annotated[float, Field(ge=0, le=600)] = 0.0
     limit_s: Seconds = 300.0

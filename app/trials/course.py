@@ -8,14 +8,18 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 
+import numpy as np
+
 from app.session import Session, spread_goals
 from app.trials.scores import Moment, MomentKind, Tagged, Visited
 from app.trials.steps import (
+    Click,
     Door,
     Drive,
     Explore,
     Kidnap,
     Move,
+    PutPacket,
     Repeat,
     Send,
     Set,
@@ -53,7 +57,7 @@ class Course:
 
     def ticks(self) -> Iterator[str]:
         """What is being done, before each tick."""
-        yield from self._all(self.steps)
+        yield from self.ticks_of(self.steps)
         self.mark("the end", kind="end")
 
     def mark(self, words: str, ok: bool | None = None, kind: MomentKind | None = None) -> None:
@@ -70,7 +74,8 @@ class Course:
 
     # ------------------------------------------------------------ the steps
 
-    def _all(self, steps: Sequence[Step]) -> Iterator[str]:
+    def ticks_of(self, steps: Sequence[Step]) -> Iterator[str]:
+        """What is being done, before each tick of some of the steps."""
         for step in steps:
             yield from self._carry_out(step)
 
@@ -89,12 +94,14 @@ class Course:
                     yield from self._visit(name, step)
             case Tour():
                 yield from self._tour(step)
+            case Click():
+                yield from self._click(step)
             case Wait():
                 self.session.drive(*_STANDING)
                 yield from self._for(step.seconds, "waiting")
             case Repeat():
                 for _ in range(step.times):
-                    yield from self._all(step.steps)
+                    yield from self.ticks_of(step.steps)
             case _:
                 self._do_at_once(step)
 
@@ -107,6 +114,8 @@ class Course:
                 self._tag_here(step.name)
             case Kidnap():
                 self._kidnap(step)
+            case PutPacket():
+                self._put_packet(step)
             case Set():
                 self.session.set_parameters(step.values)
                 self.mark(", ".join(f"{name} = {value}" for name, value in step.values.items()))
@@ -211,17 +220,36 @@ class Course:
             yield from self._go(f"visit {number} of {step.visits}", goals[goal], places[goal], step)
 
     def _go(self, name: str, experience: int, place: tuple[float, float], step: Visit | Tour) -> Iterator[str]:
-        session, beginning = self.session, self._beginning
-        session.go_to(experience)
-        while session.pilot.goal_state != (experience, "arrived"):
+        beginning = self._beginning
+        self.session.go_to(experience)
+        yield from self._until_there(name, experience, place, step, beginning)
+
+    def _click(self, step: Click) -> Iterator[str]:
+        """The click is as exact as the map: it falls where the map has what the robot experienced nearest to the place."""
+        session, map_ = self.session, self.session.brain.experience_map
+        x, y = self._place(step.place)
+        births = session.evaluation.births(len(map_))
+        nearest = int(np.nanargmin(np.hypot(births[:, 0] - x, births[:, 1] - y)))
+        place = float(births[nearest, 0]), float(births[nearest, 1])
+        name = step.place if isinstance(step.place, str) else "the place that was clicked"
+        experience = session.set_goal(float(map_.poses[nearest, 0]), float(map_.poses[nearest, 1]))
+        self.mark(f"{name} is clicked on the map: to experience {experience}")
+        yield from self._until_there(name, experience, place, step, self._beginning)
+
+    def _until_there(
+        self, name: str, experience: int, place: tuple[float, float], step: Visit | Tour | Click,
+        beginning: tuple[float, float],
+    ) -> Iterator[str]:  # fmt: skip
+        """Until the robot says that it has come to its goal, or the time is over; the experimenter sees whether it has."""
+        session = self.session
+        while (state := session.pilot.goal_state) is None or state[1] != "arrived":
             if session.time_s - beginning[0] >= step.timeout_s - 1e-9:
                 self._visited(name, experience, place, f"not reached in {step.timeout_s:g} s", beginning)
                 return
             yield from self._tick(f"on the way to {name}")
         miss_m = math.dist(self._here, place)
-        self._visited(
-            name, experience, place, "" if miss_m <= step.near_m else f"arrived {miss_m:.2f} m away", beginning
-        )
+        why = "" if miss_m <= step.near_m else f"arrived {miss_m:.2f} m away"
+        self._visited(name, experience, place, why, beginning)
 
     @property
     def _beginning(self) -> tuple[float, float]:
@@ -246,6 +274,13 @@ class Course:
             x, y, by_chance = self._far_away(step.least_m)
             session.kidnap(x, y, by_chance if heading is None else heading)
         self.mark("kidnapped", kind="kidnap")
+
+    def _put_packet(self, step: PutPacket) -> None:
+        cells = self.session.brain.pose_cells
+        n_theta, n_y, n_x = cells.shape
+        x, y = round(cells.winner.x + step.away[0]) % n_x, round(cells.winner.y + step.away[1]) % n_y
+        heading = cells.winner.heading_rad + step.layers * math.tau / n_theta
+        self.mark(self.session.put_packet(x, y, math.remainder(heading, math.tau), step.share), kind="packet")
 
     def _far_away(self, least_m: float) -> tuple[float, float, float]:
         for _ in range(_TRIES):

@@ -23,6 +23,7 @@ from app.trials.figure_options import check_figures
 from app.trials.measures import MEASURES
 from app.trials.scores import Counted, unknown_score
 from app.trials.steps import (
+    Click,
     Drive,
     Explore,
     Kidnap,
@@ -306,6 +307,8 @@ def duration_s(step: Step) -> float:
             return 40.0 * len(step.places)
         case Tour():
             return 40.0 * step.visits
+        case Click():
+            return 30.0
         case Wait():
             return step.seconds
         case Repeat():

@@ -138,6 +138,24 @@ class Tour(_Step):
     near_m: Metres = 1.0
 
 
+class Click(_Step):
+    """Somebody clicks the map at what stands for this place, and the robot goes there, or gives up after so long."""
+
+    do: Literal["click"]
+    place: Where
+    timeout_s: Seconds = 120.0
+    near_m: Metres = 1.0
+
+
+class PutPacket(_Step):
+    """A packet of activity is put into the pose cells by hand, so far from the winner (cells, layers). No sensor asks for it."""
+
+    do: Literal["packet"]
+    away: tuple[int, int]  # cells along x' and y'
+    layers: int = 0
+    share: Annotated[float, Field(ge=0.01, le=0.95)] = 0.4  # of all activity afterwards
+
+
 class Wait(_Step):
     """The robot stands still."""
 
@@ -169,7 +187,21 @@ class Repeat(_Step):
 
 
 Step = Annotated[
-    Explore | Drive | Move | Kidnap | Tag | TagHere | Send | Visit | Tour | Wait | Set | Door | Repeat,
+    Explore
+    | Drive
+    | Move
+    | Kidnap
+    | Tag
+    | TagHere
+    | Send
+    | Visit
+    | Tour
+    | Click
+    | PutPacket
+    | Wait
+    | Set
+    | Door
+    | Repeat,
     Field(discriminator="do"),
 ]
 Repeat.model_rebuild()
@@ -215,6 +247,8 @@ def _places(step: Step) -> Sequence[Where]:
         case Drive(path=path):
             return path
         case Kidnap(place=place) if place is not None:
+            return [place]
+        case Click(place=place):
             return [place]
         case _:
             return []
