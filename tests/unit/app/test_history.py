@@ -30,7 +30,7 @@ def at(session: Session, time_s: float) -> None:
     """The session stands at another time."""
     frame: Any = session.frame
     rest = {name: getattr(frame, name) for name in frame.__slots__ if name not in ("tick", "time_s")}
-    session.frame = type(frame)(**rest, tick=round(10 * time_s), time_s=time_s)
+    session.source.frame = type(frame)(**rest, tick=round(10 * time_s), time_s=time_s)
 
 
 def kinds(history: History) -> list[str]:

@@ -99,5 +99,5 @@ def test_each_field_of_each_part_changes_the_hash() -> None:
     assert session.state_hash() == then
     assert count["seed"] == 1
     assert all(count[part] > least for part, least in zip(PARTS, (80, 60, 40, 80, 12), strict=True)), count
-    session.world = load_world("office")
+    session.office.world = load_world("office")
     assert session.state_hash() != then

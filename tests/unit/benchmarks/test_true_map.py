@@ -159,7 +159,9 @@ def test_figures_are_printed_beside_their_bars_and_written(tmp_path: Path, capsy
     assert command.main(["office", "step", "--seeds", "1", "2", "--workers", "1", "--report", str(file)]) == 0
     out = capsys.readouterr().out.splitlines()
     assert out[0].startswith("office: 20 min and 5 goals; 2 runs, 0.8 simulated h: about ")
-    assert out[1:3] == [f"  office, seed {seed}: map 0.1 m, 5 of 5 goals; 300 x real time" for seed in (1, 2)]
+    assert out[1:3] == [
+        f"  {seed} of 2: office, seed {seed}: map 0.1 m, 5 of 5 goals; 300 x real time" for seed in (1, 2)
+    ]
     assert out[3].split() == ["office", "map", "error,", "median", "0.10", "m", "bar", "<=", "0.15", "m", "holds"]
     assert out[-1].split() == ["step", "step", "1.00", "ms"]
     told = json.loads(file.read_text("utf-8"))
