@@ -1,10 +1,8 @@
-"""Brains of running sessions, kept in a folder of their own, so that a crash loses a minute of learning and not an
-hour.
+"""The brain of the running session, kept every minute and when the program ends, in a folder of its own: a crash loses a
+minute of learning and not an hour. The engine only makes the copy.
 
-Each process writes files of its own, so two at once never overwrite each other's. The comment of a file's first zip
-entry says which world, seed and time the brain is from; it can be read without unpacking the file.
-
-Keeps the brain of the running session, every minute and when the program ends. The engine only makes the copy.
+Each process writes files of its own, so two at once never overwrite each other's. The comment of a file's first zip entry
+says which world, seed and time the brain is from; it can be read without unpacking the file.
 """
 
 from __future__ import annotations

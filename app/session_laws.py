@@ -1,13 +1,5 @@
-"""What is true of a second brain between two ticks.
-
-What is true of the evaluation between two ticks.
-
-What is true of the pilot between two ticks.
-
-What is true of the simulated robot and office between two ticks.
-
-What is true of a session as a whole, and of its last step.
-"""
+"""What is true of a session between two ticks: of its office and robot, pilot, evaluation and second brain, of its last step
+and as a whole. Laws read private attributes and do not trust annotations."""
 
 from __future__ import annotations
 
@@ -37,8 +29,7 @@ from sim2d.actors.walkers import Walkers
 from sim2d.importers.plan import empty_room
 from web.messages import GoalState
 
-# Laws do not trust annotations.
-# pyright: reportUnnecessaryIsInstance=false
+# pyright: reportPrivateUsage=false, reportUnnecessaryIsInstance=false
 
 
 def companion(companion: Companion, experiences: int) -> None:
@@ -63,10 +54,6 @@ def companion(companion: Companion, experiences: int) -> None:
     true(len(companion.counterpart) <= experiences, f"there are {experiences} experiences to have a counterpart")
     for own_one in companion.counterpart:
         whole("a counterpart", own_one, -1, own - 1)
-
-
-# Laws read private attributes and do not trust annotations.
-# pyright: reportPrivateUsage=false, reportUnnecessaryIsInstance=false
 
 
 LONGEST_S = 1e12
@@ -113,10 +100,6 @@ def _kidnap(kidnap: Kidnapping, experiences: int) -> None:
 def _time(name: str, value: float | None) -> None:
     if value is not None:
         number(f"a kidnap's {name}", value, 0.0, LONGEST_S)
-
-
-# Laws read private attributes and do not trust annotations.
-# pyright: reportPrivateUsage=false, reportUnnecessaryIsInstance=false
 
 
 def pilot(pilot: Pilot, experiences: int) -> None:
@@ -197,10 +180,6 @@ def _bars(bars: Bars) -> None:
         number("what is left of a bar", bar.left_s, -LONGEST_S, LONGEST_S)
         number("how long a bar lasts", bar.lasts_s, 0.0, LONGEST_S)
         whole("failures at a bar", bar.failures, 1)
-
-
-# Laws read private attributes and do not trust annotations.
-# pyright: reportPrivateUsage=false, reportUnnecessaryIsInstance=false
 
 
 FASTEST = 1e3  # m/s and rad/s
@@ -287,10 +266,6 @@ def _frame(frame: SensorFrame) -> None:
     for speed in (frame.odometry_speed, frame.odometry_yaw_rate):
         number("a speed that the odometry says", speed, -FASTEST, FASTEST)
     whole("the scene", frame.scene)
-
-
-# Laws read private attributes and do not trust annotations.
-# pyright: reportPrivateUsage=false, reportUnnecessaryIsInstance=false
 
 
 _PARTS = {"seed", "config", "source", "brain", "ties", "pilot", "evaluation", "odometry", "estimate", "tags"}

@@ -1,9 +1,5 @@
-"""An edit: steps that turn one immutable World into another.
-
-Undo and redo. Worlds are immutable, so the history is a stack of the worlds before each edit.
-
-Undo gives back the same World object as before the edit, redo the one after it.
-"""
+"""An edit: steps that turn one immutable World into another. So the history is a stack of the worlds before each edit: undo
+gives back the same object as before it, redo the one after it."""
 
 from __future__ import annotations
 

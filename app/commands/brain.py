@@ -1,11 +1,5 @@
-"""Reading the brain, replacing it by another, and going on with a run that was kept.
-
-A second brain on the same senses: beginning and ending it. The orders themselves: app/comparing.py.
-
-Put a packet of activity into the pose cells by hand and watch it compete.
-
-Parameters, one by one or as a preset.
-"""
+"""Commands to the brain: reading it, replacing it, a second one on the same senses (the orders themselves: app/session.py),
+a packet put in by hand, and parameters, one by one or as a preset."""
 
 from __future__ import annotations
 

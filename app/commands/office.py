@@ -1,9 +1,5 @@
-"""Commands that change the office: doors, lamps, boxes.
-
-Editing the office while the robot drives, undo and redo.
-
-What the engine has to know of world files that the server opens, saves, deletes and restores.
-"""
+"""Commands that change the office while the robot drives, with undo and redo; and what the engine has to know of world files
+that the server opens, saves, deletes and restores."""
 
 from __future__ import annotations
 

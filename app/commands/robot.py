@@ -1,7 +1,5 @@
-"""Commands to the robot: goal, tags, mode, driving by hand, kidnapping.
-
-Choosing what to inspect, and warnings to the page. Nothing here changes the robot.
-"""
+"""Commands to the robot: goal, tags, mode, driving by hand, kidnapping. What to inspect and warnings, which change nothing
+in it."""
 
 from __future__ import annotations
 

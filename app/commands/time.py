@@ -1,9 +1,5 @@
-"""Looking at earlier moments of a run, going on from one of them, and changing between branches.
-
-Moments that somebody names.
-
-What leads to the moment that is shown, opening what leads to another, and leaving it before it is there.
-"""
+"""The past of a run: looking at it, going on from it, branches, moments with a name; and situations, which lead to the
+moment that is shown, or to another that is opened."""
 
 from __future__ import annotations
 

@@ -1,7 +1,4 @@
-"""Pause, resume, single ticks, single stages of a tick, speed, reset.
-
-Playing a recording that the server has opened.
-"""
+"""Pause, resume, single ticks, single stages of a tick, speed, reset; and playing a recording that the server has opened."""
 
 from __future__ import annotations
 

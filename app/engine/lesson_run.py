@@ -1,7 +1,5 @@
-"""One run of a lesson in the engine: its scene, what is shown, and the free play afterwards.
-
-A lesson that is being given: its rounds, what was predicted, what came of it. One for all the runs of the lesson.
-"""
+"""One run of a lesson in the engine: its scene, what is shown, and the free play afterwards. `Teaching` is one for all runs
+of a lesson that is being given: its rounds, what was predicted, what came of it."""
 
 from __future__ import annotations
 

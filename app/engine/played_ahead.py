@@ -1,7 +1,5 @@
-"""A situation that was opened: its orders are given at their ticks, up to its moment; there the hashes are compared.
-
-What the timeline says of an order that is given again.
-"""
+"""A situation that was opened: its orders are given at their ticks, and told on the timeline, up to its moment; there the
+hashes are compared."""
 
 from __future__ import annotations
 

@@ -1,7 +1,5 @@
-"""Ticks that were asked for by number. They are worked off one by one, so that other commands come in between.
-
-`run_until`: as fast as possible to the very tick in which something happens.
-"""
+"""Ticks that somebody waits for: so many, worked off one by one, so that other commands come in between; or, for
+`run_until`, as fast as possible to the very tick in which something happens."""
 
 from __future__ import annotations
 

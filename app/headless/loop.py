@@ -1,9 +1,5 @@
-"""The ticks of a run without a server, and what is kept of them for its report.
-
-How sure the robot is of its place, and whether it is right to be.
-
-One goal: sending the robot there, and judging by truth whether it came there.
-"""
+"""The ticks of a run without a server, and what is kept of them for its report: how it grows, how sure the robot is of its
+place and whether it is right to be; and sending it to a goal, judged by the truth."""
 
 from __future__ import annotations
 

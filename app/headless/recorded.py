@@ -1,7 +1,4 @@
-"""A recording played without a server, as fast as possible, and its report: `ratslam headless --recording`.
-
-The way through a recording, a row a frame.
-"""
+"""`ratslam headless --recording`: a recording played as fast as possible, its report, and the way through it, a row a frame."""
 
 from __future__ import annotations
 

@@ -1,9 +1,5 @@
-"""What the reports of runs have in common. docs/reports.md tells what each key means.
-
-How a run grows: views, experiences, links, memory and speed, sampled at regular simulated times.
-
-Where a run saves its brain.
-"""
+"""What the reports of runs have in common (docs/reports.md tells what each key means): views, experiences, links, memory and
+speed at regular simulated times; and where a run saves its brain."""
 
 from __future__ import annotations
 

@@ -1,7 +1,4 @@
-"""Exploring, then goals: `ratslam headless`.
-
-When to kidnap a robot, by chance.
-"""
+"""`ratslam headless`: exploring, with kidnaps by chance if they are wanted, then goals."""
 
 from __future__ import annotations
 
@@ -21,7 +18,7 @@ from sim2d import World
 EARLY_S = 300.0  # a third of the kidnaps come before, when much is still unknown
 FIRST_S = 20.0  # a robot that has only just begun has no place to find again
 REST_S = 240.0  # at least so long it has to find itself, if the time allows it
-_STREAM = 3  # of the run's seed; session.py and deliveries.py use others
+_STREAM = 3  # of the run's seed; session.py and trials/steps.py use others
 
 
 def kidnap_times(count: int, minutes: float, seed: int) -> list[float]:

@@ -1,7 +1,5 @@
-"""The lessons there are: those that come with the program, and the user's own in ~/.ratslam/lessons.
-
-In which line of a TOML file a value stands: TOML's readers do not tell.
-"""
+"""The lessons there are: those that come with the program, and the user's own in ~/.ratslam/lessons. A mistake is told with
+its line of the TOML file, which TOML's readers do not tell."""
 
 from __future__ import annotations
 

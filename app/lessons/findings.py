@@ -1,7 +1,5 @@
-"""What is asked of the run of a lesson: a measure, of one of its rounds, or the difference of two.
-
-What can be measured in the run of a lesson, by name: what it is, and how it is told. performance.py measures it.
-"""
+"""What can be measured in the run of a lesson, by name (performance.py measures it), and what is asked of it: a measure, of
+one of its rounds, or the difference of two."""
 
 from __future__ import annotations
 

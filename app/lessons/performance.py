@@ -1,8 +1,5 @@
-"""One run of a lesson: its scene is set, and what is shown is measured. The same lesson and seed is the same run, bit for bit,
-on the page and in a test.
-
-What came of a lesson that ran without a page, in words, and whether it kept what it promises.
-"""
+"""One run of a lesson: its scene is set, what is shown is measured, and what came of it is told in words. The same lesson
+and seed is the same run, bit for bit, on the page and in a test."""
 
 from __future__ import annotations
 

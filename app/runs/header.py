@@ -1,9 +1,6 @@
-"""The first line of a run's file: what the run began from, and which program on which machine made it.
-
-Four bytes that tell one tick of a run from another: where the robot is, what it sees, and where it believes to be.
-
-The text of an edited world as what differs from the text before, so that an hour of editing stays small.
-"""
+"""The parts of a run's file: its first line, what it began from and which program on which machine made it; the pulse, four
+bytes that tell one tick from another (where the robot is, what it sees, where it believes to be); an edited world as what
+differs from the text before, so that an hour of editing stays small."""
 
 from __future__ import annotations
 

@@ -1,9 +1,5 @@
-"""The file of a run that goes on. What a full disk does not take is kept and written later, so that no line is missing.
-
-Files of lines that are written while a program may be killed: each line carries a checksum of all lines up to it.
-
-The lines of a run's file, from what the engine tells.
-"""
+"""The file of a run that goes on, written while a program may be killed: each line carries a checksum of all lines up to it,
+and what a full disk does not take is kept and written later, so that no line is missing."""
 
 from __future__ import annotations
 

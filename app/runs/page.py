@@ -1,9 +1,6 @@
-"""One run on its way to the disk: makes its folder, turns what the engine tells into lines, and survives a full disk.
-
-Hashes and files of the copies that the engine makes of a session, from a thread of their own: both take their time.
-
-A branch of a run on the disk: a run of its own, with the other's past up to where it left it.
-"""
+"""One run on its way to the disk: makes its folder, turns what the engine tells into lines, and survives a full disk. Hashes
+and files of the engine's copies of a session take their time, so they have a thread of their own. A branch is a run of
+its own, with the other's past up to where it left it."""
 
 from __future__ import annotations
 

@@ -1,7 +1,5 @@
-"""Running a kept run again: does it come out the same, and where was it when it was left?
-
-The run of a recording: it begins with the recording, which lies where it lay, rather than with a world.
-"""
+"""Running a kept run again: does it come out the same, and where was it when it was left? That of a recording begins with
+the recording, which lies where it lay, rather than with a world."""
 
 from __future__ import annotations
 

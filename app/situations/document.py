@@ -1,11 +1,8 @@
-"""The JSON of a situation, as in its file; a link has the same, shorter and packed.
+"""A situation as the text of a file (JSON) or as a link, which has the same, shorter and packed. Both come from others, so
+everything in them is checked.
 
 A link leaves out what every program has: the text of a world of the program (`check` says which text that was), and
 parameters at their defaults (`defaults` says which those were).
-
-A situation from the text of a file or from a link. Both come from others, so everything in them is checked.
-
-A situation as the text of a file or as a link.
 """
 
 from __future__ import annotations

@@ -1,7 +1,5 @@
-"""Situations for the page: what its menu shows of a moment, and what it is sent to open.
-
-A situation as lines of Python that make it again: for a notebook.
-"""
+"""Situations for the page: what its menu shows of a moment, as a link, a file, or lines of Python for a notebook, and what
+it is sent to open."""
 
 from __future__ import annotations
 

@@ -1,7 +1,5 @@
-"""A run up to a moment: what it began from, its orders, the hash of its state there, and from where it is looked at.
-
-What leads to a moment, as the engine hands it out between two ticks; the situation is made of it later.
-"""
+"""A run up to a moment: what it began from, its orders, the hash of its state there, and from where it is looked at. The
+engine hands out what leads to the moment between two ticks; the situation is made of it later."""
 
 from __future__ import annotations
 

@@ -1,15 +1,13 @@
-"""States that follow one another, kept as chunks: what has not changed costs nothing, and what nobody needs is let go.
-
-What memory has no room for, in a file without a name, which the system removes together with the program. [ours]
-
-Places in the file are given out at once; a thread of its own writes, so a slow disk holds nobody up, and what was not written
-yet stays in memory. A full disk takes nothing more, and says nothing: what it does not take is thinned. test_shelf.py.
-
-Arrays and states kept as chunks of bytes: one that has not changed since the state before is the same object; one that has
-changed is kept as its difference from an earlier one where that is smaller.
+"""States that follow one another, kept as chunks of bytes: one that has not changed is the same object as before, one that
+has changed is kept as its difference from an earlier one where that is smaller, and what nobody needs is let go. [ours]
+test_chunks.py.
 
 Of ten hours there are hundreds of thousands of them. None can be part of a cycle, so the garbage collector is not to walk
-through them: it would hold up everything for half a second. test_chunks.py.
+through them: it would hold up everything for half a second.
+
+What memory has no room for lies in a file without a name, which the system removes together with the program. Places in
+it are given out at once; a thread of its own writes, so a slow disk holds nobody up, and what was not written yet stays
+in memory. A full disk takes nothing more, and says nothing: what it does not take is thinned. [ours] test_shelf.py.
 """
 
 from __future__ import annotations

@@ -1,11 +1,7 @@
 """The past of a run, kept while it runs: any moment can be looked at again, and gone on from as another branch. [ours]
 
-No paper has this: a run is the same bit for bit, so a keyframe now and then and the orders in between are enough.
-tests/unit/app/test_time_machine.py.
-
-A moment of a run, made again: a session and its history, which go on exactly as they once did.
-
-One line of a run: its end, the keyframes on it, and the orders in between. With these any moment can be made again.
+No paper has this: a run is the same bit for bit, so keyframes now and then on each branch and the orders in between are
+enough to make a moment again, and to go on from it exactly as it once did. tests/unit/app/test_time_machine.py.
 """
 
 from __future__ import annotations

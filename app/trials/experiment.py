@@ -1,7 +1,5 @@
-"""An experiment as a file: world, robot, engines, protocol, axes, scores, figures. docs/experiments.md tells how to write one.
-
-One trial of an experiment, chosen by engine, levels and seed.
-"""
+"""An experiment as a file: world, robot, engines, protocol, axes, scores, figures (docs/experiments.md tells how to write
+one); and one trial of it, chosen by engine, levels and seed."""
 
 from __future__ import annotations
 

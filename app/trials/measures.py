@@ -1,9 +1,4 @@
-"""What an experiment may have measured beside the scores of every trial: each looks at every tick and gives scores.
-
-How near to the route the chosen local movement ends, beside those that were free and not chosen. D 4.3, figure 4.
-
-Whether the route of the goal memory stays when its three weights change by a fifth. C IV.C: "insensitive to small changes".
-"""
+"""What an experiment may have measured beside the scores of every trial: each looks at every tick and gives scores."""
 
 from __future__ import annotations
 
@@ -22,7 +17,8 @@ if TYPE_CHECKING:
 
 
 class Arbitration:
-    """Looks once a second while the robot follows a route: how far from the route's next point each movement ends, m."""
+    """Looks once a second while the robot follows a route: how far from its next point each movement ends, m; the one that
+    was chosen, beside those that were free and not chosen. D 4.3, figure 4."""
 
     EVERY_S = 1.0
 
@@ -64,7 +60,8 @@ MOST_STEPS = 1000  # cells that a route may be long
 
 
 class GoalMemoryRoutes:
-    """Goal memories with changed weights learn beside the brain's own, and lead from where the robot is to where it began."""
+    """Goal memories with each of the three weights changed by a fifth learn beside the brain's own, and lead back to
+    where the robot began: does the route stay? C IV.C: "insensitive to small changes"."""
 
     def __init__(self, course: Course) -> None:
         from ratslam_core import GoalMemory

@@ -1,7 +1,5 @@
-"""The scores that every trial has.
-
-What the experimenter writes down: moments, places that are tagged, and how visits ended.
-"""
+"""What the experimenter writes down (moments, places that are tagged, how visits ended), and the scores that every trial has
+of it."""
 
 from __future__ import annotations
 

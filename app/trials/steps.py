@@ -1,9 +1,5 @@
-"""The steps that protocols are made of, as they stand in an experiment's file. docs/experiments.md tells how to use them.
-
-The order in which places are visited, round after round.
-
-Whether the steps of a protocol fit the world and the parameters, before the first of them is carried out.
-"""
+"""The steps that protocols are made of, as they stand in the file of an experiment or lesson (docs/experiments.md tells how
+to use them), and whether they fit the world and the parameters, before the first of them is carried out."""
 
 from __future__ import annotations
 
@@ -20,7 +16,7 @@ if TYPE_CHECKING:
     from app.session import Session
     from sim2d import World
 
-_STREAM = 2  # of the run's seed; session.py and kidnap_times.py use others
+_STREAM = 2  # of the run's seed; session.py and headless/run.py use others
 
 
 def order(goals: int, visits: int, seed: int) -> Iterator[int]:

@@ -1,8 +1,5 @@
-"""What the figures need of a trial that is not kept with its scores: it is run again and written down here.
-
-Plain numbers and arrays, since it is made in other processes and sent here.
-
-What a trial has left behind at its end, as plain arrays laid over the office: map, pose cells, pictures, plan.
+"""What the figures need of a trial that is not kept with its scores: it is run again and written down here, with what it has
+left behind at its end, laid over the office. Plain numbers and arrays, since it is made in other processes and sent here.
 """
 
 from __future__ import annotations
