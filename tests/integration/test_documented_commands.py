@@ -94,6 +94,7 @@ SMALLEST = {
     "recognition": "loop --minutes 0.5 --seeds 401 --rows {row}", "recordings": "--data {data} --only office",
     "seeking": "--hours 0.01 --count 3", "server_load": "--seconds 3", "soak": "--minutes 0.2",
     "trials": "--trials 10 --workers 1", "true_map": "office --seeds 1 --workers 1",
+    "ways": "--json {here}/ways.json",
 }  # fmt: skip
 
 
