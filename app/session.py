@@ -420,18 +420,6 @@ def played_session(player: Player, seed: int | None = None) -> Session:
     return Session(Recorded(player), player.seed, player.config)
 
 
-def spread_goals(session: Session, count: int) -> list[int]:
-    """`count` experiences spread over the map. Each is the one farthest from the robot and from those chosen before."""
-    poses = session.brain.experience_map.poses
-    robot = session.brain.experience_map.robot
-    away = np.hypot(poses[:, 0] - robot.x, poses[:, 1] - robot.y)
-    chosen: list[int] = []
-    for _ in range(min(count, len(poses))):
-        chosen.append(int(np.argmax(away)))
-        away = np.minimum(away, np.hypot(*(poses[:, :2] - poses[chosen[-1], :2]).T))
-    return chosen
-
-
 def _nobody(_order: Order) -> object:
     """The default for `on_order`: does nothing."""
 

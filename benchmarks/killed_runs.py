@@ -24,6 +24,7 @@ from random import Random
 import numpy as np
 from numpy.typing import NDArray
 
+from app.code_version import code_version
 from app.config import Config
 from app.engine_thread import EngineThread
 from app.runs.book import Book
@@ -34,7 +35,6 @@ from app.runs.keeper import RunKeeper
 from app.runs.replay import newest_state, replay
 from app.runs.run_file import KeptRun, open_run
 from app.session import Session
-from app.trials.code_version import code_version
 from ratslam_core import RatSlam
 from sim2d import load_world
 from web import messages as m

@@ -15,8 +15,7 @@ import time
 
 from playwright.sync_api import Page, sync_playwright
 
-from app.lessons.files import catalogue
-from app.lessons.schema import Lesson
+from app.protocol.lesson import Lesson, catalogue
 from benchmarks.machine import verdict
 from tests.e2e.browser import launch, open_page
 from tests.e2e.program import Program

@@ -17,9 +17,9 @@ from typing import Any
 from app.experiments.runner import pending, run_trials
 from app.experiments.store import Store
 from app.experiments.workers import connected_to
-from app.trials.experiment import find_experiment
-from app.trials.scores import Moment
-from app.trials.trial import Result, Trial
+from app.protocol.course import Moment
+from app.protocol.experiment import find_experiment
+from app.protocol.trial import Result, Trial
 
 BAR_MS = 5.0
 

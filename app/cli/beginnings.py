@@ -24,8 +24,8 @@ from sim2d.importers import open_world
 if TYPE_CHECKING:
     from app.engine.engine import Engine
     from app.kept_brains import KeptBrain
+    from app.protocol.trial import Trial
     from app.runs.run_file import KeptRun
-    from app.trials.trial import Trial
     from web import messages as m
 
 _NOT_WITH_RECORDING = ("scale", "brain", "resume_brain", "experiment", "engine", "levels")
@@ -173,7 +173,7 @@ def played_recording(args: argparse.Namespace) -> First:
 
 def chosen_experiment(args: argparse.Namespace, running: bool) -> First:
     """A trial of an experiment from its beginning. running: as in `first_of_trial`."""
-    from app.trials.experiment import chosen_trial, find_experiment
+    from app.protocol.experiment import chosen_trial, find_experiment
 
     _refuse(args, _NOT_WITH_EXPERIMENT, "--experiment, which has its own world and parameters")
     experiment = find_experiment(args.experiment)
@@ -183,8 +183,8 @@ def chosen_experiment(args: argparse.Namespace, running: bool) -> First:
 
 def first_of_trial(trial: Trial, moment_s: float | None, title: str, running: bool) -> First:
     """A trial, from its beginning or run ahead to a moment. title: of its experiment. running: whether it plays at once."""
+    from app.code_version import code_version
     from app.engine.watched_trial import CHANGED
-    from app.trials.code_version import code_version
 
     config = Config().with_values(trial.values)
     world = open_world(trial.world, robot_radius_m=config.robot.robot_radius_m)

@@ -56,6 +56,7 @@ def _add_config(commands: Verbs) -> None:
     pages.add_argument(
         "--additions", action="store_true", help="print what is ours beyond the papers, as a Markdown table"
     )
+    pages.add_argument("--measures", action="store_true", help="print what experiments and lessons can measure instead")
     add_config_options(config)
     config.set_defaults(do=_config)
 
@@ -64,7 +65,12 @@ def _config(args: argparse.Namespace) -> int:
     from app.config import Config, additions_markdown, to_markdown, to_toml
 
     config = config_of(args, Config())
-    text = additions_markdown() if args.additions else to_markdown(config) if args.table else to_toml(config)
+    if args.measures:
+        from app.protocol import measures
+
+        text = measures.to_markdown()
+    else:
+        text = additions_markdown() if args.additions else to_markdown(config) if args.table else to_toml(config)
     print(text, end="")
     return 0
 

@@ -11,7 +11,7 @@ from disk import require_writable
 from disk.limits import TRIALS
 
 if TYPE_CHECKING:
-    from app.trials.experiment import Experiment
+    from app.protocol.experiment import Experiment
 
 _RESERVED = ("all", "check", "open", "results")
 
@@ -121,7 +121,7 @@ def _results(args: argparse.Namespace) -> int:
     from app.experiments.report import make_folder
     from app.experiments.results import write_results
     from app.experiments.store import Store
-    from app.trials.experiment import catalogue
+    from app.protocol.experiment import catalogue
 
     folder = make_folder(args.out or Path("docs"))
     with Store(args.store) as store:
@@ -140,7 +140,7 @@ def check_whole(experiment: Experiment) -> None:
 
 
 def _check_file(file: str) -> int:
-    from app.trials.experiment import read_experiment
+    from app.protocol.experiment import read_experiment
 
     experiment = read_experiment(Path(file))
     if experiment.name in _RESERVED:

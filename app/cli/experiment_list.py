@@ -10,7 +10,7 @@ from pathlib import Path
 from app.experiments.runner import duration_of, time_words
 from app.experiments.store import Store, default_path
 from app.experiments.workers import cores
-from app.trials.experiment import Experiment, catalogue, names
+from app.protocol.experiment import Experiment, catalogue, names
 
 WIDTH = 100
 

@@ -22,8 +22,8 @@ from app.experiments.runner import Duration, duration_of, pending, run_trials, t
 from app.experiments.store import Store
 from app.experiments.summary import summarise, table_of
 from app.experiments.workers import Workers
-from app.trials.experiment import EngineName, Experiment, catalogue, find_experiment
-from app.trials.trial import Trial
+from app.protocol.experiment import EngineName, Experiment, catalogue, find_experiment
+from app.protocol.trial import Trial
 
 OUT = Path("experiments")
 

@@ -38,7 +38,7 @@ def _lessons(args: argparse.Namespace) -> int:
 
 
 def _list() -> int:
-    from app.lessons.files import all_lessons, own_folder, own_lessons
+    from app.protocol.lesson import all_lessons, own_folder, own_lessons
 
     for number, lesson in enumerate(all_lessons(), start=1):
         print(f"{number:2}  {lesson.name:18} {lesson.title} ({lesson.paper})")
@@ -50,7 +50,7 @@ def _list() -> int:
 
 def _check(path: Path) -> int:
     from app.gallery.lessons import check_formulas
-    from app.lessons.files import check_lesson, read_lesson
+    from app.protocol.lesson import check_lesson, read_lesson
 
     lesson = read_lesson(path)
     try:
@@ -65,8 +65,8 @@ def _check(path: Path) -> int:
 
 def _run(name: str, seed: int | None) -> int:
     from app.cli.progress import compile_first
-    from app.lessons.files import find_lesson, read_lesson
-    from app.lessons.performance import report_of
+    from app.protocol.lesson import find_lesson, read_lesson
+    from app.protocol.performance import report_of
 
     lesson = read_lesson(Path(name)) if name.endswith(".toml") else find_lesson(name)
     compile_first()
@@ -77,8 +77,8 @@ def _run(name: str, seed: int | None) -> int:
 
 def _time() -> int:
     from app.cli.progress import compile_first
-    from app.lessons.files import all_lessons
-    from app.lessons.performance import finish, set_scene
+    from app.protocol.lesson import all_lessons
+    from app.protocol.performance import finish, set_scene
 
     compile_first()
     print(f"{'lesson':18}  to set the scene of each round    to show them, as fast as possible")

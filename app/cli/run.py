@@ -13,7 +13,7 @@ from app.runs.folder import BUDGET_MB
 
 if TYPE_CHECKING:
     from app.cli.beginnings import First
-    from app.trials.trial import Trial
+    from app.protocol.trial import Trial
     from web.http.server import ForClass
 
 CLASS_PORT = 8001
@@ -125,7 +125,7 @@ def run_with_trial(trial: Trial, moment_s: float | None, *, title: str = "", ser
     catalogue.
     """
     from app.cli.beginnings import first_of_trial
-    from app.trials.experiment import catalogue
+    from app.protocol.experiment import catalogue
 
     title = title or next((each.title for each in catalogue() if each.name == trial.experiment), trial.experiment)
     serving = serving or Serving()

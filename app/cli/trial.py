@@ -15,10 +15,10 @@ from app.cli.progress import compile_first, with_progress
 from disk import require_writable
 
 if TYPE_CHECKING:
-    from app.trials.course import Course
-    from app.trials.experiment import EngineName
-    from app.trials.steps import Values
-    from app.trials.trial import Result, Trial
+    from app.protocol.course import Course
+    from app.protocol.experiment import EngineName
+    from app.protocol.steps import Values
+    from app.protocol.trial import Result, Trial
 
 _SIZES = (8, 512)
 _PER_CENT = 0.01
@@ -53,7 +53,7 @@ def _trial(args: argparse.Namespace) -> int:
     if not 0 <= args.seed < 2**32:
         raise ValueError(f"--seed must be from 0 to {2**32 - 1}, got {args.seed}")
     require_writable("--report", args.report)
-    from app.trials.trial import run_trial
+    from app.protocol.trial import run_trial
 
     asked = SizeAndAmbiguity(args.pose_cells, args.ambiguity, args.vision, args.engine, args.seed)
     compile_first()
@@ -76,7 +76,7 @@ class SizeAndAmbiguity:
     @property
     def trial(self) -> Trial:
         """The table's trial with these numbers."""
-        from app.trials.experiment import find_experiment
+        from app.protocol.experiment import find_experiment
 
         first = find_experiment("table").make_trials([self.engine], 1)[0]
         size = self.pose_cells

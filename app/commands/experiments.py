@@ -6,7 +6,7 @@ from app.commands.outcome import Outcome
 from app.config.presets import values_of
 from app.engine.engine import Engine
 from app.engine.watched_trial import CHANGED
-from app.trials.experiment import Experiment, catalogue, check_levels, chosen_trial
+from app.protocol.experiment import Experiment, catalogue, check_levels, chosen_trial
 from web import messages as m
 from web.messages.commands import CommandModel
 

@@ -6,8 +6,8 @@ from app.commands.outcome import Outcome, attempt
 from app.engine.engine import Engine
 from app.engine.lesson_run import LessonRun, Teaching
 from app.engine.waiting import RunUntil
-from app.lessons.conditions import read_until
-from app.lessons.files import find_lesson
+from app.protocol.conditions import read_until
+from app.protocol.lesson import find_lesson
 from web import messages as m
 
 NONE = "no lesson was begun in this run: begin one first"

@@ -20,7 +20,8 @@ from app.engine.waiting import Steps
 from app.engine.watchdog import Watchdog, words_of
 from app.engine.watched_trial import WatchedTrial
 from app.engine.work import Slices, Work
-from app.lessons.performance import session_of
+from app.protocol.performance import session_of
+from app.protocol.trial import Trial
 from app.recordings.playing import Player
 from app.runs.book import Book, Fork
 from app.runs.bookmarks import read_bookmarks
@@ -30,7 +31,6 @@ from app.runs.run_file import KeptRun
 from app.session import Session, played_session
 from app.situations import Situation
 from app.time_machine import PastRoom
-from app.trials.trial import Trial
 from app.views.snapshots import PairChoices
 from app.views.tick_stages import TickRecorder
 from app.world_editor import WorldEditor

@@ -7,9 +7,8 @@ import math
 from dataclasses import dataclass, field
 
 from app.config import Config
-from app.lessons.findings import Values, told
-from app.lessons.performance import Performance
-from app.lessons.schema import Lesson
+from app.protocol.lesson import Lesson, Measured, told
+from app.protocol.performance import Performance
 from app.session import Session
 from app.views.history import History
 from web.messages import Inspect, LessonOutcome, LessonPrediction, LessonState, LessonView, LessonVotes
@@ -180,7 +179,7 @@ class Teaching:
     outcome: LessonOutcome | None = None
     _votes: dict[str, LessonPrediction] = field(default_factory=dict[str, LessonPrediction])
     _senders: dict[str, str] = field(default_factory=dict[str, str])  # the address of each voter
-    _found: list[tuple[str, Values]] = field(default_factory=list[tuple[str, Values]])
+    _found: list[tuple[str, Measured]] = field(default_factory=list[tuple[str, Measured]])
 
     @property
     def is_last(self) -> bool:

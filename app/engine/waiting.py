@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections import deque
 
-from app.lessons.conditions import Until, Waiting
+from app.protocol.conditions import Until, Waiting
 from app.session import Session
 from app.views.history import History
 from web.messages import Request, UntilState, UntilView

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from app.trials.course import Course
-from app.trials.experiment import seconds_of
-from app.trials.trial import Trial
+from app.protocol.course import Course
+from app.protocol.trial import Trial
 from app.views.event_log import EventLog
 from web.messages import TrialState, TrialView
 
@@ -23,7 +22,7 @@ class WatchedTrial:
         self.doing = self.outcome = ""
         self.altered = False
         self._log, self._told = log, 0
-        self._about_s = seconds_of(trial)
+        self._about_s = trial.about_s
         self._ahead_s = None if moment_s is None or moment_s <= BEFORE_S else moment_s - BEFORE_S
         self._ticks = course.ticks()
         where = ", ".join([trial.engine, *trial.levels, f"seed {trial.seed}"])

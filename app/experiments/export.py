@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from app.experiments.store import StoredTrial
-from app.trials.experiment import Experiment
+from app.protocol.experiment import Experiment
 from disk import write_whole
 
 _FIRST = ["id", "engine"]

@@ -14,8 +14,8 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, SpinnerColumn
 from app.experiments.runner import time_words
 from app.experiments.store import Outcome, StoredTrial
 from app.experiments.summary import CellKey, CellSummary, place_in, summarise, table_of
-from app.trials.experiment import Experiment
-from app.trials.trial import Trial
+from app.protocol.experiment import Experiment
+from app.protocol.trial import Trial
 
 REDRAW_S = 0.5
 LINE_EVERY_S = 15.0

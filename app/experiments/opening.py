@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from app.code_version import code_version
 from app.experiments.store import Store
-from app.trials.code_version import code_version
-from app.trials.trial import Trial, text_of
+from app.protocol.trial import Trial, text_of
 from sim2d.importers import open_world
 
 

@@ -14,9 +14,9 @@ from app.experiments.page.page import Entry, index_of, page_of, picture_of
 from app.experiments.store import StoredTrial
 from app.experiments.summary import found, table_of
 from app.experiments.workers import Workers
-from app.trials.experiment import Experiment
-from app.trials.trace import Trace
-from app.trials.trial import Trial
+from app.protocol.experiment import Experiment
+from app.protocol.trace import Trace
+from app.protocol.trial import Trial
 from disk.state_reading import words_of
 
 

@@ -13,10 +13,10 @@ from dataclasses import astuple
 from pathlib import Path
 from typing import Any, cast
 
+from app.code_version import code_version
 from app.experiments.store import StoredTrial
 from app.experiments.summary import ENGINE_WORDS, CellSummary, Estimate, found, summarise, words, words_of
-from app.trials.code_version import code_version
-from app.trials.experiment import Experiment
+from app.protocol.experiment import Experiment
 
 DOCS = Path(__file__).parents[2] / "docs"
 _HEADING = """# Results

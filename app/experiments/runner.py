@@ -15,8 +15,8 @@ from typing import Any
 
 from app.experiments.store import Outcome, Store
 from app.experiments.workers import RunOne, run_batch, run_stored
-from app.trials.experiment import Experiment
-from app.trials.trial import Trial
+from app.protocol.experiment import Experiment
+from app.protocol.trial import Trial
 
 BATCH_S = 2.0  # work in a batch: what is lost with a worker, against what handing it out costs
 MOST_AT_ONCE = 250  # trials in a batch, if they do nothing

@@ -19,8 +19,8 @@ from typing import Any
 
 from pydantic import TypeAdapter
 
-from app.trials.steps import Step
-from app.trials.trial import Result, Trial
+from app.protocol.steps import Step
+from app.protocol.trial import Result, Trial
 from disk import kept_folder
 from disk.locks import require_record_locks
 

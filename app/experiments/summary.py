@@ -16,7 +16,7 @@ from rich.table import Table
 from rich.text import Text
 
 from app.experiments.store import StoredTrial
-from app.trials.experiment import Experiment, Original, Score
+from app.protocol.experiment import Experiment, Original, Score
 
 ENGINE_WORDS = {
     "paper": "the paper's rules", "paper-2005": "the rules of 2005", "paper-2006": "the rules of 2006", "ours": "our rules",

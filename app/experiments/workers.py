@@ -16,12 +16,12 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from app.code_version import code_version
 from app.experiments.store import Outcome
-from app.trials.code_version import code_version
-from app.trials.trial import Result, Trial, run_trial
+from app.protocol.trial import Result, Trial, run_trial
 
 if TYPE_CHECKING:
-    from app.trials.trace import Trace
+    from app.protocol.trace import Trace
 
 RunOne = Callable[[Trial], Result]
 
@@ -71,7 +71,7 @@ class Workers:
         """Trials run again and written down, in this order, for the figures."""
         if not trials:
             return []
-        from app.trials.trace import trace_of
+        from app.protocol.trace import trace_of
 
         client = self.client
         return client.gather([client.submit(trace_of, trial, pure=False, retries=1) for trial in trials])
@@ -138,7 +138,7 @@ def _fork_ready_workers() -> None:
     server: Any = import_module("multiprocessing.forkserver")
     dask.config.set({"distributed.worker.multiprocessing-method": "forkserver"})
     utils.get_mp_context().set_forkserver_preload(
-        ["ratslam_live", "distributed", "app.experiments.workers", "app.trials.course"]
+        ["ratslam_live", "distributed", "app.experiments.workers", "app.protocol.course"]
     )
     with _environment(PYTHONPATH=str(_ROOT), PYTHONSAFEPATH="1", **_ONE_THREAD):  # this program, wherever it is called
         server.ensure_running()

@@ -14,8 +14,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from app.protocol.trace import placed, plan_of
 from app.session import Session
-from app.trials.trace import placed, plan_of
 from ratslam_core import Pose2
 
 FPS = 20

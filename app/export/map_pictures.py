@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 
 from app.evaluation.agreement import alignment
 from app.experiments.figures.canvas import BLUE, FAINT, INK, ORANGE, VERMILION, WALL, frame, panels, png_of, style
+from app.protocol.trace import placed, plan_of
 from app.session import Session
-from app.trials.trace import placed, plan_of
 
 _WIDTH_IN = 6.4
 _MARGIN_M = 0.4

@@ -21,9 +21,9 @@ from mcap.writer import CompressionType, Writer
 from numpy.typing import NDArray
 from rosbags.typesys import Stores, get_typestore
 
+from app.code_version import code_version
 from app.config.toml_file import to_toml
 from app.session import Session
-from app.trials.code_version import code_version
 from app.views.event_log import EventLog
 from app.views.event_watch import EventWatch
 from ratslam_core import Pose2

@@ -13,12 +13,12 @@ from functools import lru_cache
 from pathlib import Path
 from typing import TypeVar
 
+from app.code_version import code_version
 from app.experiments.results import published_cells
 from app.experiments.store import Store, StoredTrial, default_path
 from app.experiments.summary import CellSummary, summarise, words
-from app.trials.code_version import code_version
-from app.trials.experiment import EngineName, Experiment, Score, catalogue, first_levels
-from app.trials.steps import Drive, Repeat, Step, Tag, place_of
+from app.protocol.experiment import EngineName, Experiment, Score, catalogue, first_levels
+from app.protocol.steps import Drive, Repeat, Step, Tag, place_of
 from sim2d import World
 from sim2d.importers import open_world
 from web.http.experiments import Axis, Card, Cell, Detail, Dot, Plan, Results

@@ -9,9 +9,8 @@ from xml.etree import ElementTree
 from latex2mathml.converter import convert
 
 from app.config import Config
-from app.lessons.files import all_lessons, catalogue, own_lessons
-from app.lessons.performance import shown_s
-from app.lessons.schema import Formula, Lesson
+from app.protocol.lesson import Formula, Lesson, all_lessons, catalogue, own_lessons
+from app.protocol.performance import shown_s
 from sim2d.importers import open_world
 from web.http.lessons import FormulaText, LessonCard, LessonText, LookText, Question, SymbolText, TryText
 

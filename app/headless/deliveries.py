@@ -6,28 +6,18 @@ Milford, Wyeth, "Persistent Navigation and Mapping using a Biologically Inspired
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass
+from collections.abc import Iterator
 from typing import Any
 
 from app.config import Config
-from app.headless.loop import Loop, Progress, Visit, silent, visit
-from app.headless.report import EVERY_S, Sample, counts, judged
-from app.session import Session, spread_goals
-from app.trials.steps import order
+from app.headless.report import EVERY_S, Growth, Sample, counts, judged
+from app.protocol.course import Course, Progress, Tagged, Visited, run_ticks
+from app.protocol.steps import Explore, Tour
+from app.session import Session
 from ratslam_core import RatSlam
 from sim2d import World
 
 HOUR_S = 3600.0
-
-
-@dataclass(slots=True)
-class Goal:
-    """One of the places to which is delivered."""
-
-    experience: int
-    place: tuple[float, float]  # where it was made (m, office frame)
-    visits: int = 0
-    failures: int = 0
 
 
 class Deliveries:
@@ -35,51 +25,38 @@ class Deliveries:
 
     def __init__(
         self, world: World, seed: int, *, minutes: float, goals: int, deliveries: int, timeout_s: float,
-        config: Config | None = None, brain: RatSlam | None = None, progress: Progress = silent,
+        config: Config | None = None, brain: RatSlam | None = None, progress: Progress | None = None,
     ) -> None:  # fmt: skip
         """minutes: of exploring before. timeout_s: a delivery that takes longer is a failure."""
-        self._minutes, self._wanted, self._asked, self._timeout_s = minutes, goals, deliveries, timeout_s
-        self._session = Session(world, seed, config, brain)
-        self._loop, self._began = Loop(self._session, progress), time.perf_counter()
-        self._goals: list[Goal] = []
-        self._failures: list[Visit] = []
-        self._count, self._explored_s, self._explored_m = 0, 0.0, 0.0
+        self._explore = Explore(minutes=minutes)
+        self._tour = Tour(goals=goals, visits=deliveries, timeout_s=timeout_s)
+        self._session, self._progress = Session(world, seed, config, brain), progress
+        self._course, self._growth = Course(self._session), Growth(self._session)
+        self._began, self._explored_s, self._explored_m = time.perf_counter(), 0.0, 0.0
 
     def carry_out(self) -> None:
         """Explore and deliver. ValueError: the robot has not seen enough to have so many goals."""
-        session = self._session
-        self._loop.explore(self._minutes)
-        self._explored_s, self._explored_m = session.time_s, session.evaluation.path_m
-        self._goals = self._spread()
-        for number in order(self._wanted, self._asked, session.seed):
-            goal, failed = self._goals[number], len(self._failures)
-            what = f"delivery {self._count + 1} of {self._asked}, {failed} failed"
-            done = visit(self._loop, goal.experience, goal.place, self._timeout_s, what)
-            self._count += 1
-            goal.visits += 1
-            if not done.reached:
-                goal.failures += 1
-                self._failures.append(done)
+        run_ticks(self._course, self._ticks(), [self._growth.note], self._progress)
 
-    def _spread(self) -> list[Goal]:
-        session = self._session
-        chosen = spread_goals(session, self._wanted)
-        if len(chosen) < self._wanted:
-            raise ValueError(
-                f"--goals {self._wanted}: after {self._minutes:g} minutes the robot knows only {len(chosen)} places; "
-                "let it explore longer (--minutes)"
-            )
-        map_ = session.brain.experience_map
-        return [Goal(experience, session.evaluation.made_at(experience, map_)) for experience in chosen]
+    def _ticks(self) -> Iterator[str]:
+        course, session = self._course, self._session
+        yield from self._explore.carry_out(course)
+        self._explored_s, self._explored_m = session.time_s, session.evaluation.path_m
+        for _ in self._tour.carry_out(course):
+            yield f"delivery {len(course.visits) + 1} of {self._tour.visits}, {len(self._failures)} failed"
+
+    @property
+    def _failures(self) -> list[Visited]:
+        return [visit for visit in self._course.visits if not visit.reached]
 
     def report(self) -> dict[str, Any]:
         """What has been done so far. docs/reports.md tells what each key means."""
-        session, growth = self._session, self._loop.growth
+        session, growth, count = self._session, self._growth, len(self._course.visits)
         about = counts(session, time.perf_counter() - self._began)
-        now = growth.sample(session)
+        now = growth.sample()
         return {
-            "deliveries": self._count,
-            "succeeded": self._count - len(self._failures),
+            "deliveries": count,
+            "succeeded": count - len(self._failures),
             "metres": about["metres"],
             "simulated_s": about["simulated_s"],
             "failures": [_told(failure) for failure in self._failures],
@@ -91,25 +68,30 @@ class Deliveries:
             "rss_every_s": EVERY_S,
             "world": about["world"],
             "seed": session.seed,
-            "partial": self._count < self._asked,
+            "partial": count < self._tour.visits,
             "explored": {"simulated_s": round(self._explored_s, 3), "metres": round(self._explored_m, 3)},
             **judged(session),
             "growth": self._hours(now),
-            "goals": [
-                {"experience": g.experience, "x": round(g.place[0], 3), "y": round(g.place[1], 3), "visits": g.visits,
-                 "failures": g.failures}
-                for g in self._goals
-            ],
+            "goals": [self._goal(tag) for tag in self._course.tags.values()],
             "state_hash": session.state_hash(),
+        }  # fmt: skip
+
+    def _goal(self, tag: Tagged) -> dict[str, Any]:
+        """One of the places to which is delivered."""
+        visits = [visit for visit in self._course.visits if visit.experience == tag.experience]
+        failures = sum(not visit.reached for visit in visits)
+        return {
+            "experience": tag.experience, "x": round(tag.x, 3), "y": round(tag.y, 3), "visits": len(visits),
+            "failures": failures,
         }  # fmt: skip
 
     def _hours(self, now: Sample) -> list[dict[str, Any]]:
         """A row for each full simulated hour, and one for the rest."""
         an_hour = round(HOUR_S / EVERY_S)
-        full = self._loop.growth.samples[an_hour - 1 :: an_hour]
+        full = self._growth.samples[an_hour - 1 :: an_hour]
         ends = full if full and full[-1].at_s == now.at_s else [*full, now]
         rows: list[dict[str, Any]] = []
-        for sample, speed in zip(ends, self._loop.growth.speeds(ends), strict=True):
+        for sample, speed in zip(ends, self._growth.speeds(ends), strict=True):
             rows.append({
                 "at_s": sample.at_s, "views": sample.views, "experiences": sample.experiences, "links": sample.links,
                 "view_links": sample.view_links, "rss_mb": sample.rss_mb, "real_time_factor": speed,
@@ -117,5 +99,5 @@ class Deliveries:
         return rows
 
 
-def _told(visit: Visit) -> dict[str, Any]:
-    return {"at_s": round(visit.began_s, 3), "goal": visit.goal, "reason": visit.reason}
+def _told(visit: Visited) -> dict[str, Any]:
+    return {"at_s": round(visit.began_s, 3), "goal": visit.experience, "reason": visit.why}

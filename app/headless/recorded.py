@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.evaluation.agreement import rmse
-from app.headless.loop import Progress, silent
 from app.headless.report import rounded, size
+from app.protocol.course import TELL_AFTER, Progress
 from app.recordings.playing import Player, Step
 from app.recordings.recording import Pose
 from disk import whole_file
@@ -71,10 +71,7 @@ class Trace:
                 out.write(f"{line}\n".encode())
 
 
-TELL_AFTER = 20  # moments between two calls of `progress`
-
-
-def run_recording(player: Player, progress: Progress = silent) -> tuple[dict[str, Any], Trace, RatSlam]:
+def run_recording(player: Player, progress: Progress | None = None) -> tuple[dict[str, Any], Trace, RatSlam]:
     """Play a recording to its end. Returns the report, the trace and the brain. What the recording lacks is absent.
 
     ValueError: nothing in it could be played after all.
@@ -85,7 +82,7 @@ def run_recording(player: Player, progress: Progress = silent) -> tuple[dict[str
     for count, step in enumerate(player.steps(), start=1):
         trace.note(step)
         judging.note(step)
-        if count % TELL_AFTER == 0:
+        if progress is not None and count % TELL_AFTER == 0:
             progress(step.moment.time_s - told_s, "playing")
             told_s = step.moment.time_s
     about = player.recording.about

@@ -7,9 +7,12 @@ import math
 import os
 import sys
 import time
+from array import array
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from app.evaluation import Coverage, backbone, looks, loops_closed
 from app.session import Session
@@ -113,18 +116,19 @@ class Growth:
     """Call `note` after each tick."""
 
     def __init__(self, session: Session) -> None:
+        self._session = session
         self._began, self._due_s = time.perf_counter(), session.time_s + EVERY_S
         self.samples: list[Sample] = []
         self._begin_s = session.time_s
 
-    def note(self, session: Session) -> None:
-        if session.time_s >= self._due_s - 1e-9:
+    def note(self) -> None:
+        if self._session.time_s >= self._due_s - 1e-9:
             self._due_s += EVERY_S
-            self.samples.append(self.sample(session))
+            self.samples.append(self.sample())
 
-    def sample(self, session: Session) -> Sample:
+    def sample(self) -> Sample:
         """The session as it is now."""
-        brain = session.brain
+        session, brain = self._session, self._session.brain
         views, links = len(brain.local_view), brain.view_links
         return Sample(
             round(session.time_s, 3), views, len(brain.experience_map), brain.experience_map.link_count,
@@ -151,15 +155,60 @@ def _memory_mb(judge: int) -> float | None:
     return round((pages * os.sysconf("SC_PAGE_SIZE") - judge) / 1e6, 1)
 
 
+class Uncertainty:
+    """How sure the robot is of its place, and whether it is right to be. Call `note` after each tick."""
+
+    EVERY = 10  # ticks
+
+    def __init__(self, session: Session) -> None:
+        self._session = session
+        self._sigma_m, self._off_m = array("d"), array("d")
+        self._ticks = self._lost = 0
+
+    def note(self) -> None:
+        session = self._session
+        self._ticks += 1
+        self._lost += session.brain.lost
+        sigma_m = session.brain.experience_map.off_m
+        if not math.isfinite(sigma_m) or session.brain.carried or session.tick_count % self.EVERY:
+            return
+        self._sigma_m.append(sigma_m)
+        self._off_m.append(session.evaluation.belief_off(session.simulator.truth, session.brain.experience_map)[0])
+
+    def report(self) -> dict[str, Any]:
+        """The robot's own sigma (m) while it was not lost, and the share of the time in which it was right to two
+        sigma; None without a belief that has one. And the share of the ticks in which it held itself to be lost."""
+        sigma, off = np.array(self._sigma_m), np.array(self._off_m)
+        judged = np.isfinite(off)
+        right = float(np.mean(off[judged] <= 2 * sigma[judged])) if judged.any() else math.nan
+        return {
+            "median_m": _share(float(np.median(sigma))) if sigma.size else None,
+            "most_m": _share(float(sigma.max())) if sigma.size else None,
+            "within_two_sigma": _share(right),
+            "lost_share": _share(self._lost / max(self._ticks, 1)),
+        }
+
+
+def _share(value: float) -> float | None:
+    return round(value, 4) if math.isfinite(value) else None
+
+
 class BrainFile:
     """Where the brain is saved at the end. It is saved after the report, so that a failure does not lose the report."""
+
+    LOOK_AFTER = 600  # ticks
 
     def __init__(self, path: Path) -> None:
         self._path, self._warned = path, False
         self._brain: RatSlam | None = None
 
+    def note(self, session: Session) -> None:
+        """To be called after each tick."""
+        if session.tick_count % self.LOOK_AFTER == 0:
+            self.look(session.brain)
+
     def look(self, brain: RatSlam) -> None:
-        """Remember the brain, and warn once if it is becoming too large for a file. Called from time to time."""
+        """Remember the brain, and warn once if it is becoming too large for a file."""
         self._brain = brain
         warning = None if self._warned else encode(brain).outgrowing
         if warning is not None:

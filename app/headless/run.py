@@ -3,22 +3,23 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 import numpy as np
 
 from app.config import Config
-from app.headless.loop import Loop, Progress, Visit, silent, visit
-from app.headless.report import BrainFile, counts, judged, kidnaps, rounded
-from app.session import Session, spread_goals
+from app.headless.report import BrainFile, Growth, Uncertainty, counts, judged, kidnaps, rounded
+from app.protocol.course import Course, Progress, Visited, run_ticks
+from app.protocol.steps import Explore, spread_goals
+from app.session import Session
 from ratslam_core import RatSlam
 from sim2d import World
 
 EARLY_S = 300.0  # a third of the kidnaps come before, when much is still unknown
 FIRST_S = 20.0  # a robot that has only just begun has no place to find again
 REST_S = 240.0  # at least so long it has to find itself, if the time allows it
-_STREAM = 3  # of the run's seed; session.py and trials/steps.py use others
+_STREAM = 3  # of the run's seed; session.py and protocol/steps.py use others
 
 
 def kidnap_times(count: int, minutes: float, seed: int) -> list[float]:
@@ -51,7 +52,7 @@ def _rest(count: int, within_s: float) -> float:
     return min(REST_S, within_s / (count + 2))
 
 
-GOAL_TIMEOUT_S = 180.0
+GOAL_TIMEOUT_S, NEAR_ENOUGH_M = 180.0, 1.0
 
 
 def run_headless(
@@ -64,7 +65,7 @@ def run_headless(
     kidnap_at_s: Sequence[float] = (),
     brain: RatSlam | None = None,
     brain_file: BrainFile | None = None,
-    progress: Progress = silent,
+    progress: Progress | None = None,
 ) -> dict[str, Any]:
     """Explore for `minutes` of simulated time, then visit `goals` places. Returns the report as a dict (docs/reports.md).
 
@@ -73,44 +74,56 @@ def run_headless(
     with the simulated seconds since the last call and what is being done.
     """
     session = Session(world, seed, config, brain)
-    loop, began = Loop(session, progress, brain_file), time.perf_counter()
-    loop.explore(minutes, kidnap_at_s)
-    visits: list[dict[str, Any]] = []
-    for number, goal in enumerate(spread_goals(session, goals)):
-        place = session.evaluation.made_at(goal, session.brain.experience_map)
-        visits.append(_told(visit(loop, goal, place, GOAL_TIMEOUT_S, f"goal {number + 1} of {goals}")))
+    course, began = Course(session), time.perf_counter()
+    growth, uncertainty = Growth(session), Uncertainty(session)
+    watchers: list[Callable[[], object]] = [growth.note, uncertainty.note]
+    if brain_file is not None:
+        watchers.append(lambda: brain_file.note(session))
+    run_ticks(course, _ticks(course, minutes, kidnap_at_s, goals), watchers, progress)
     wall = time.perf_counter() - began
     if brain_file is not None:
         brain_file.look(session.brain)
     return {
         **counts(session, wall),
         **judged(session),
-        "uncertainty": loop.uncertainty.report(),
-        **_growth(loop),
-        "goals": visits,
+        "uncertainty": uncertainty.report(),
+        **_growth(growth),
+        "goals": [_told(visit) for visit in course.visits],
         "kidnaps": kidnaps(session),
         "state_hash": session.state_hash(),
     }
 
 
-def _told(visit: Visit) -> dict[str, Any]:
+def _ticks(course: Course, minutes: float, kidnap_at_s: Sequence[float], goals: int) -> Iterator[str]:
+    """The protocol: what is being done, before each tick."""
+    session, due = course.session, sorted(kidnap_at_s)
+    for what in Explore(minutes=minutes).carry_out(course) if minutes else ():
+        while due and session.time_s >= due[0] - 1e-9:
+            session.kidnap()
+            due.pop(0)
+        yield what
+    for number, goal in enumerate(spread_goals(session, goals), start=1):
+        place = session.evaluation.made_at(goal, session.brain.experience_map)
+        yield from course.go(f"goal {number} of {goals}", goal, place, GOAL_TIMEOUT_S, NEAR_ENOUGH_M)
+
+
+def _told(visit: Visited) -> dict[str, Any]:
     return {
-        "experience": visit.goal,
+        "experience": visit.experience,
         "reached": visit.reached,
         "time_s": rounded(visit.time_s),
         "path_m": rounded(visit.path_m),
         "shortest_m": rounded(visit.shortest_m),
         "miss_m": rounded(visit.miss_m),
-        "reason": visit.reason,
+        "reason": visit.why,
     }
 
 
-def _growth(loop: Loop) -> dict[str, Any]:
+def _growth(growth: Growth) -> dict[str, Any]:
     """What grew, and apart from it what depends on the machine."""
-    samples = loop.growth.samples
     names = ("at_s", "views", "experiences", "links", "view_links")
     return {
-        "growth": [{name: getattr(sample, name) for name in names} for sample in samples],
-        "real_time_factors": loop.growth.speeds(samples),
-        "rss_mb": [sample.rss_mb for sample in samples],
+        "growth": [{name: getattr(sample, name) for name in names} for sample in growth.samples],
+        "real_time_factors": growth.speeds(growth.samples),
+        "rss_mb": [sample.rss_mb for sample in growth.samples],
     }

@@ -17,8 +17,8 @@ import numpy as np
 from pydantic import AfterValidator, ConfigDict, Field, TypeAdapter, ValidationError
 from pydantic.dataclasses import dataclass as checked
 
+from app.code_version import code_version
 from app.config import Config, Value
-from app.trials.code_version import code_version
 from disk.limits import EDITED_BYTES, ORDERS
 from disk.state_reading import words_of
 from disk.words import one_line, plain

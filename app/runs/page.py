@@ -14,6 +14,7 @@ from dataclasses import replace
 from itertools import count
 from pathlib import Path
 
+from app.code_version import code_version
 from app.order_book import Order
 from app.runs.book import Book, Copy, Ended, Fork, Hashed, Marked, Told
 from app.runs.bookmarks import write_bookmarks
@@ -22,7 +23,6 @@ from app.runs.header import header_of, written
 from app.runs.journal import Journal, LineBook
 from app.runs.run_file import KeptRun, open_run
 from app.session_snapshot import save_copy
-from app.trials.code_version import code_version
 from disk import encode, whole_file, write_state
 
 SAVE_EVERY_S = 60.0  # simulated time ...

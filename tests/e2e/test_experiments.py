@@ -8,8 +8,8 @@ import pytest
 from playwright.sync_api import Browser, expect
 
 from app.experiments.store import Outcome, Store
-from app.trials.experiment import chosen_trial, find_experiment
-from app.trials.trial import run_trial
+from app.protocol.experiment import chosen_trial, find_experiment
+from app.protocol.trial import run_trial
 from tests.e2e.browser import open_page, told, until
 from tests.e2e.program import Program
 

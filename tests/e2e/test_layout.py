@@ -10,9 +10,9 @@ import pytest
 from playwright.sync_api import Browser, Page, expect
 
 from app.experiments.store import Outcome, Store
-from app.trials.experiment import chosen_trial, find_experiment
-from app.trials.scores import Moment
-from app.trials.trial import Result
+from app.protocol.course import Moment
+from app.protocol.experiment import chosen_trial, find_experiment
+from app.protocol.trial import Result
 from sim2d import load_world, world_to_json
 from tests.e2e.browser import NO_STAGE, PATIENCE_MS, at_each, box_of, calm, on_screen, open_page, turn_theme, until
 from tests.e2e.editor import drop, plan_png

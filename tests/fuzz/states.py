@@ -14,7 +14,8 @@ from typing import Any
 import numpy as np
 
 from app.config import Config
-from app.session import Session, spread_goals
+from app.protocol.steps import spread_goals
+from app.session import Session
 from app.session_snapshot import read_session, take_session
 from disk import State, write_state
 from ratslam_core import RatSlam, find_places, take_snapshot

@@ -12,9 +12,9 @@ import pytest
 
 from app.config import Config, Value
 from app.config.presets import preset
+from app.protocol.course import Course
+from app.protocol.steps import Drive
 from app.session import Session
-from app.trials.course import Course
-from app.trials.steps import Drive
 from ratslam_core import Odometry, RatSlam, RatSlamParams
 from ratslam_core.params.presets import with_values
 from sim2d import load_world

@@ -15,7 +15,8 @@ import pytest
 from app.config import Config
 from app.headless import run_headless
 from app.headless.report import MACHINE
-from app.session import Session, spread_goals
+from app.protocol.steps import spread_goals
+from app.session import Session
 from ratslam_core import LocalView, LocalViewParams
 from sim2d import load_world
 

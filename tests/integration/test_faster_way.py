@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 
 from app.config import Config
+from app.protocol.course import Course
+from app.protocol.steps import Drive, Tag, Visit
 from app.session import Session
-from app.trials.course import Course
-from app.trials.steps import Drive, Tag, Visit
 from sim2d import World, load_world
 
 Place = str | tuple[float, float]

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from app.config import Config
-from app.session import Session, spread_goals
+from app.protocol.steps import spread_goals
+from app.session import Session
 from ratslam_core import laws, restore_snapshot, take_snapshot
 from sim2d import load_world
 

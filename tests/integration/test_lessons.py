@@ -8,9 +8,8 @@ import pytest
 
 from app.engine.lesson_run import Teaching
 from app.gallery.lessons import StoredLessons, check_formulas
-from app.lessons.files import catalogue, check_lesson
-from app.lessons.performance import perform_round, report_of
-from app.lessons.schema import Lesson
+from app.protocol.lesson import Lesson, catalogue, check_lesson
+from app.protocol.performance import perform_round, report_of
 from ratslam_core.params.additions import ADDITIONS
 from sim2d import load_world
 from tests.unit.app.engines import an_engine, tell

@@ -9,7 +9,7 @@ import pytest
 
 from app.cli.command_line import main
 from app.experiments.store import Store
-from app.trials.experiment import catalogue
+from app.protocol.experiment import catalogue
 
 
 @pytest.mark.long

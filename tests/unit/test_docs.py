@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 
 from app.config import Config, additions_markdown, to_markdown
+from app.protocol import measures
 
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
@@ -42,6 +43,7 @@ def test_the_tables_are_those_of_the_program() -> None:
     for page, table, option in (
         ("parameters.md", to_markdown(Config()), "--table"),
         ("additions.md", additions_markdown(), "--additions"),
+        ("measures.md", measures.to_markdown(), "--measures"),
     ):
         assert (DOCS / page).read_text(encoding="utf-8") == table, (
             f"docs/{page} is old: make it anew with `ratslam config {option} > docs/{page}`"

@@ -9,9 +9,8 @@ import pytest
 
 from app.config import Config
 from app.config.pairs import pairs_beside
-from app.lessons.files import catalogue
-from app.lessons.performance import perform_round, report_of
-from app.lessons.schema import Lesson
+from app.protocol.lesson import Lesson, catalogue
+from app.protocol.performance import perform_round, report_of
 from web.shared import TABS
 
 ROOT = Path(__file__).parents[2]

@@ -8,8 +8,8 @@ from typing import Any
 from app.experiments.figures import curves, dots, maps, series, survival
 from app.experiments.figures.canvas import style
 from app.experiments.figures.material import Drawn, Material, Pick
-from app.trials.experiment import FigureSpec
-from app.trials.figure_options import options_of
+from app.protocol.experiment import FigureSpec
+from app.protocol.figure_options import options_of
 
 KINDS: dict[str, Callable[[FigureSpec, Any, Material], Drawn]] = {
     "curves": curves.draw,

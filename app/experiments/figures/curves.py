@@ -19,8 +19,8 @@ from numpy.typing import NDArray
 from app.experiments.figures.canvas import CYCLE, INK, MARKERS, WIDTH_IN, go_by_powers, grid_lines, panels
 from app.experiments.figures.material import Drawn, Material
 from app.experiments.summary import ENGINE_WORDS, CellSummary
-from app.trials.experiment import FigureSpec, Score
-from app.trials.figure_options import Curves
+from app.protocol.experiment import FigureSpec, Score
+from app.protocol.figure_options import Curves
 
 _HIGH_IN = 2.9
 _ROW_IN, _AROUND_IN = (

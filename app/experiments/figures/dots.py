@@ -17,8 +17,8 @@ from app.experiments.figures.curves import finish_score, has, interval_words
 from app.experiments.figures.material import Drawn, Material, trial_gid
 from app.experiments.store import StoredTrial
 from app.experiments.summary import ENGINE_WORDS, value_of
-from app.trials.experiment import FigureSpec, Score
-from app.trials.figure_options import Dots
+from app.protocol.experiment import FigureSpec, Score
+from app.protocol.figure_options import Dots
 
 _HIGH_IN = 3.0
 _LEGEND_IN = 1.3  # that a mark of the legend takes, with its words

@@ -31,8 +31,8 @@ from app.experiments.figures.canvas import (
     VERMILION,
     WALL,
 )
-from app.trials.figure_options import Maps
-from app.trials.trace import APART_M, Grid, Movements, Trace
+from app.protocol.figure_options import Maps
+from app.protocol.trace import APART_M, Grid, Movements, Trace
 
 _Array = NDArray[np.float64]
 MARGIN_M = 0.4

@@ -15,9 +15,9 @@ from app.experiments.figures import map_panels
 from app.experiments.figures.canvas import SOFT, WIDTH_IN, frame, panels
 from app.experiments.figures.material import Drawn, Material, Pick, trial_gid
 from app.experiments.summary import ENGINE_WORDS
-from app.trials.experiment import FigureSpec
-from app.trials.figure_options import Maps
-from app.trials.trace import APART_M, Trace
+from app.protocol.experiment import FigureSpec
+from app.protocol.figure_options import Maps
+from app.protocol.trace import APART_M, Trace
 
 _SHOW = {
     "experience map": map_panels.experience_map,

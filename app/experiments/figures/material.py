@@ -11,12 +11,12 @@ from dataclasses import dataclass, field
 
 from matplotlib.figure import Figure
 
+from app.code_version import code_version
 from app.experiments.store import StoredTrial
 from app.experiments.summary import ENGINE_WORDS, CellSummary, summarise, value_of, words_of
-from app.trials.code_version import code_version
-from app.trials.experiment import Experiment, FigureSpec, Original, Score
-from app.trials.figure_options import OneTrial, Options
-from app.trials.trace import Trace
+from app.protocol.experiment import Experiment, FigureSpec, Original, Score
+from app.protocol.figure_options import OneTrial, Options
+from app.protocol.trace import Trace
 
 
 @dataclass(frozen=True, slots=True)

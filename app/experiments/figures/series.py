@@ -27,10 +27,10 @@ from app.experiments.figures.canvas import (
     panels,
 )
 from app.experiments.figures.material import Drawn, Material, Pick, trial_gid
-from app.trials.experiment import FigureSpec
-from app.trials.figure_options import Series
-from app.trials.scores import Moment
-from app.trials.trace import Trace
+from app.protocol.course import Moment
+from app.protocol.experiment import FigureSpec
+from app.protocol.figure_options import Series
+from app.protocol.trace import Trace
 
 _Array = NDArray[np.float64]
 _WORDS = {

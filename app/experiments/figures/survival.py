@@ -12,8 +12,8 @@ from app.experiments.figures.canvas import CYCLE, ENGINE_COLOUR, grid_lines, pan
 from app.experiments.figures.material import Drawn, Material, trial_gid
 from app.experiments.store import StoredTrial
 from app.experiments.summary import ENGINE_WORDS, value_of, wilson
-from app.trials.experiment import FigureSpec, Score
-from app.trials.figure_options import Survival
+from app.protocol.experiment import FigureSpec, Score
+from app.protocol.figure_options import Survival
 
 _SHADE = 0.1  # four bands over each other are still told apart
 _STYLES = ("-", "--", ":", "-.")

@@ -15,12 +15,12 @@ from typing import Any
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
+from app.code_version import code_version
 from app.experiments.figures.canvas import THEMED, svg_of
 from app.experiments.figures.material import Drawn, Material
 from app.experiments.store import StoredTrial
 from app.experiments.summary import ENGINE_WORDS, CellSummary, found, value_of, words, words_of
-from app.trials.code_version import code_version
-from app.trials.experiment import Experiment, Score
+from app.protocol.experiment import Experiment, Score
 
 _SVG, _XLINK = "http://www.w3.org/2000/svg", "http://www.w3.org/1999/xlink"
 _HREF = f"{{{_XLINK}}}href"

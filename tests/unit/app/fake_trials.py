@@ -10,8 +10,8 @@ from pathlib import Path
 from app.experiments.runner import pending, run_trials
 from app.experiments.store import Store
 from app.experiments.workers import connected_to
+from app.protocol.trial import Result, Trial
 from app.startup.ending import ended, obey_signals
-from app.trials.trial import Result, Trial
 from tests.unit.app.trial_makers import make_outcome, make_trial
 
 DEADLY = 666  # the seed of a trial that kills its worker

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from app.lessons.schema import Lesson
+from app.protocol.lesson import Lesson
 
 SHORT: dict[str, Any] = {
     "name": "short",

@@ -8,11 +8,11 @@ import numpy as np
 
 from app.experiments.figures.material import Material
 from app.experiments.store import StoredTrial
-from app.trials.experiment import Axis, EngineSpec, Experiment, FigureSpec, Level, Original, Score
-from app.trials.scores import Moment, Visited
-from app.trials.steps import Explore
-from app.trials.trace import Carried, FinalMap, Goal, Grid, Movements, Plan, Trace
-from app.trials.trial import Trial
+from app.protocol.course import Moment, Visited
+from app.protocol.experiment import Axis, EngineSpec, Experiment, FigureSpec, Level, Original, Score
+from app.protocol.steps import Explore
+from app.protocol.trace import Carried, FinalMap, Goal, Grid, Movements, Plan, Trace
+from app.protocol.trial import Trial
 from ratslam_core import Pose2
 
 SIZES, RATES = ("8", "16"), ("0 %", "2 %", "10 %")

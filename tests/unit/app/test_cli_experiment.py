@@ -13,7 +13,7 @@ from app.cli.options import ENGINES
 from app.experiments.figures.canvas import ENGINE_COLOUR
 from app.experiments.store import Store
 from app.experiments.summary import ENGINE_WORDS
-from app.trials.experiment import catalogue, read_experiment
+from app.protocol.experiment import catalogue, read_experiment
 from tests.unit.app.trial_makers import make_outcome, make_trial
 from web.messages.commands import EngineName
 

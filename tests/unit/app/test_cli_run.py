@@ -19,9 +19,9 @@ from app.cli.run import run_with_trial
 from app.cli.serving import Serving
 from app.config import Config
 from app.engine.engine import Engine
+from app.protocol.experiment import find_experiment
 from app.runs.folder import runs_folder
 from app.time_machine import PastRoom
-from app.trials.experiment import find_experiment
 from sim2d import World
 from tests.patience import PATIENCE_S
 from web.http import server

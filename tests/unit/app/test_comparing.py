@@ -8,9 +8,9 @@ from app.config import Config, Value
 from app.config.pairs import NAMES, pair_of, pairs_beside, without
 from app.config.presets import PRESETS
 from app.engine.engine import Engine
+from app.protocol.trial import run_trial
 from app.recordings.playing import Player
 from app.session import LONGEST_NAME, Session
-from app.trials.trial import run_trial
 from ratslam_core.params.additions import ADDITIONS
 from web import messages as m
 from web.http.state import beside_fields

@@ -10,9 +10,8 @@ import pytest
 from pydantic import TypeAdapter
 
 from app.config import Config
-from app.trials.course import Course
-from app.trials.scores import Tagged
-from app.trials.steps import Step
+from app.protocol.course import Course, Tagged
+from app.protocol.steps import Step
 from sim2d import Place, load_world
 
 from .sessions import a_session
@@ -150,7 +149,7 @@ def test_a_goal_that_was_never_approached_or_not_reached_is_a_failure_and_decide
     assert never.deciding.ok is False
     near = to("tag", places=["home"]), to("drive", path=["south-east corner", (5.3, 3.0)])
     late = taken(*near, to("visit", places=["home"], timeout_s=0.5), to("wait", seconds=5))
-    assert late.visits[0].why == "not reached in 0.5 s"
+    assert late.visits[0].why.startswith("not reached in 0.5 s: it is ")
     assert late.deciding.time_s == pytest.approx(late.session.time_s - 5.0, abs=0.15)
 
 

@@ -10,9 +10,9 @@ from pathlib import Path
 import pytest
 
 from app.config import Config
-from app.trials.experiment import catalogue, duration_s, find_experiment, names, read_experiment, shortened
-from app.trials.measures import MEASURES, SCORES
-from app.trials.steps import Drive, Explore, Repeat, Tour, Visit, Wait
+from app.protocol.experiment import catalogue, find_experiment, names, read_experiment
+from app.protocol.measures import MEASURES, Measuring, reading_of
+from app.protocol.steps import Drive, Explore, Repeat, Tour, Visit, Wait
 from ratslam_core.params.additions import ADDITIONS
 
 pytestmark = pytest.mark.slow
@@ -73,21 +73,21 @@ def test_the_least_file_is_an_experiment(tmp_path: Path) -> None:
 
 
 WRONG = [
-    ('do = "wait"', 'do = "fly"', "protocol.0.*fly"),
-    ("seconds = 5", "seconds = -5", "protocol.0.wait.seconds: .*greater than 0"),
+    ('do = "wait"', 'do = "fly"', "protocol.1.*fly"),
+    ("seconds = 5", "seconds = -5", "protocol.1.seconds: .*greater than 0, got -5"),
     ('score = "error_m"', "", "score 'map error': give either score = NAME or rate"),
     ('name = "mine"', 'name = "My own"', "name: .*pattern"),
     ("[engines.ours]", "[engines.mine]", "engines.mine"),
-    ('title = "Mine"', 'titel = "Mine"', "title: Field required"),
+    ('title = "Mine"', 'titel = "Mine"', "title: field required"),
     ("seconds = 5", "seconds = ", "not valid TOML"),
-    ("[engines.ours]", 'measures = ["beauty"]\n[engines.ours]', "measures: unknown 'beauty'; expected .*: arbitration"),
+    ("[engines.ours]", 'measures = ["beauty"]\n[engines.ours]', "measures: what the scores need is measured; leave"),
 ]
 
 
 def test_a_wrong_file_is_refused_by_name_place_and_reason(tmp_path: Path, subtests: pytest.Subtests) -> None:
     for wrong, right, message in WRONG:
         path = written(tmp_path, LEAST.replace(wrong, right, 1))
-        said = rf"^{re.escape(str(path))}: .*{message}"
+        said = rf"^{re.escape(str(path))}(, line \d+)?: .*{message}"
         with subtests.test(msg=right), pytest.raises(ValueError, match=said):
             read_experiment(path)
     watched = written(tmp_path, LEAST.replace("[engines.ours]", 'watch = ["9"]\n[engines.ours]', 1))
@@ -137,14 +137,12 @@ def test_quick_is_the_same_protocol_made_short() -> None:
 
 def test_each_step_can_be_made_short() -> None:
     explore = Explore(do="explore", minutes=10)
-    assert shortened(explore, 0.1) == Explore(do="explore", minutes=1.0)
-    assert shortened(Repeat(do="repeat", times=4, steps=[explore]), 0.5) == Repeat(
-        do="repeat", times=2, steps=[Explore(do="explore", minutes=5.0)]
-    )
-    assert shortened(Tour(do="tour", goals=11, visits=100), 0.05) == Tour(do="tour", goals=5, visits=5)
-    assert shortened(Drive(do="drive", path=[(0, 0)], laps=3), 0.01).laps == 1  # type: ignore[union-attr]
-    assert shortened(Visit(do="visit", places=["a"], timeout_s=100), 0.5).timeout_s == 50  # type: ignore[union-attr]
-    assert duration_s(shortened(Wait(do="wait", seconds=10), 0.2)) == 2.0
+    assert explore.shortened(0.1) == Explore(minutes=1.0)
+    assert Repeat(times=4, steps=[explore]).shortened(0.5) == Repeat(times=2, steps=[Explore(minutes=5.0)])
+    assert Tour(goals=11, visits=100).shortened(0.05) == Tour(goals=5, visits=5)
+    assert Drive(path=[(0, 0)], laps=3).shortened(0.01).laps == 1
+    assert Visit(places=["a"], timeout_s=100).shortened(0.5).timeout_s == 50
+    assert Wait(seconds=10).shortened(0.2).about_s() == 2.0
 
 
 def axis(name: str, levels: int) -> str:
@@ -163,11 +161,11 @@ IMPOSSIBLE = [
     ('[[axes]]\nname = "a"\nlevels = [{label = "0"}, {label = "0"}]', "axis 'a': two levels are labelled '0'"),
     (axis("a", 1) * 2, "axes: two are named 'a'"),
     (score("map error", 'score = "views"'), "scores: two are labelled 'map error'"),
-    (score("x", 'score = "__class__"'), "score 'x': no trial of this protocol has the score '__class__'"),
-    (score("x", 'score = "eror_m"'), r"no .* score 'eror_m'; did you mean 'error_m'\?"),
-    (score("x", 'score = "rival_s"'), "score 'x': 'rival_s' is measured by 'packets'"),
-    (score("x", 'score = "goal_2_s"'), "score 'x': 'goal_2_s' is of visit 2; the protocol has 0"),
-    (score("x", 'rate = ["recovered", "kidnaps"]'), "score 'x': no trial of this protocol has .*'recovered'"),
+    (score("x", 'score = "__class__"'), "score 'x': nothing is measured by the name '__class__'"),
+    (score("x", 'score = "eror_m"'), r"nothing .* 'eror_m'; did you mean 'error_m'\?"),
+    (score("x", 'score = "goal_N_s"'), "nothing is measured by the name 'goal_N_s'"),
+    (score("x", 'score = "goal_2_s"'), "score 'x': 'goal_2_s' is of visits; the protocol has 0"),
+    (score("x", 'rate = ["recovered", "kidnaps"]'), "score 'x': 'recovered' is of kidnaps; the protocol has 0"),
     (
         '[[protocol]]\ndo = "repeat"\ntimes = 10000\n'
         'steps = [{do = "repeat", times = 10000, steps = [{do = "wait", seconds = 1}]}]',
@@ -192,19 +190,23 @@ def test_what_no_run_can_do_is_refused_before_anything_is_made_of_it(tmp_path: P
         read_experiment(written(tmp_path, many)).make_trials()
 
 
-def test_each_measure_gives_the_scores_that_are_listed() -> None:
-    """By that list a file's scores are checked."""
+def test_each_measure_gives_the_readings_that_it_declares_and_no_two_the_same() -> None:
+    """By these a file's scores are checked, and what is measured is told in words."""
     course = find_experiment("trial").make_trials(trials=1)[0].begin()
-    assert set(SCORES) == set(MEASURES)
-    for name, measure in MEASURES.items():
-        assert set(measure(course).scores()) <= set(SCORES[name])
+    declared = [name for kind in MEASURES for name in kind.readings]
+    assert len(set(declared)) == len(declared)
+    for kind in MEASURES:
+        given = Measuring(course, [kind]).values()
+        assert set(given) <= set(kind.readings), kind
+        for name, value in given.items():
+            assert reading_of(name).shown(value)
 
 
 ASKED = """
 import ast
 from concurrent.futures import ThreadPoolExecutor
 from threading import Barrier
-from app.trials.code_version import code_version
+from app.code_version import code_version
 
 began, plain, read = Barrier(4), ast.parse, []
 ast.parse = lambda text: (read.append(text), plain(text))[1]

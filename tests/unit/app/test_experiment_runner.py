@@ -23,7 +23,7 @@ from distributed.security import Security
 from app.experiments.runner import pending, run_trials
 from app.experiments.store import Outcome, Store
 from app.experiments.workers import connected_to
-from app.trials.trial import Trial
+from app.protocol.trial import Trial
 from tests.unit.app import fake_trials
 from tests.unit.app.fake_trials import DEADLY, FAILING
 from tests.unit.app.trial_makers import make_trial, score_of

@@ -17,7 +17,7 @@ from app.experiments.opening import open_trial
 from app.experiments.runner import duration_of, time_words
 from app.experiments.store import Outcome, Store, StoredTrial
 from app.experiments.summary import Estimate, summarise, wilson, words
-from app.trials.experiment import Score
+from app.protocol.experiment import Score
 from tests.unit.app.trial_makers import SMALL, make_outcome, make_trial
 
 

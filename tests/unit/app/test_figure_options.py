@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from app.trials.experiment import catalogue
-from app.trials.figure_options import OPTIONS, check_figures, options_of
+from app.protocol.experiment import catalogue
+from app.protocol.figure_options import OPTIONS, check_figures, options_of
 from tests.unit.app.made_trials import experiment, figure
 
 WRONG = [

@@ -15,8 +15,8 @@ from app.experiments.figures.canvas import CYCLE, ENGINE_COLOUR, THEMED, png_of,
 from app.experiments.figures.curves import positions
 from app.experiments.figures.survival import until
 from app.experiments.summary import value_of, wilson
-from app.trials.experiment import Axis, Level
-from app.trials.figure_options import OPTIONS, Shown
+from app.protocol.experiment import Axis, Level
+from app.protocol.figure_options import OPTIONS, Shown
 from tests.unit.app.made_trials import RATES, SIZES, experiment, figure, material
 
 SHOWN = list(Shown.__args__)

@@ -10,9 +10,9 @@ import pytest
 from app.experiments.store import Outcome, Store, StoredTrial
 from app.experiments.summary import summarise
 from app.gallery.gallery import EARLIER, PUBLISHED, QUICK, StoredGallery
-from app.trials.experiment import chosen_trial, find_experiment, first_levels
-from app.trials.scores import Moment
-from app.trials.trial import Result, Trial
+from app.protocol.course import Moment
+from app.protocol.experiment import chosen_trial, find_experiment, first_levels
+from app.protocol.trial import Result, Trial
 from web.http.experiments import Card, Cell, Results
 
 from .trials_to_watch import SHORT

@@ -8,7 +8,7 @@ import pytest
 
 from app.config import Config
 from app.evaluation import Evaluation
-from app.headless import BrainFile, loop, run_headless
+from app.headless import BrainFile, run_headless
 from app.headless.report import Growth
 from disk import state_codec
 from ratslam_core import load_brain
@@ -41,7 +41,10 @@ def test_the_report_has_its_shape() -> None:
     assert report["simulated_s"] == pytest.approx(30 + sum(goal["time_s"] for goal in report["goals"]))
     assert json.loads(json.dumps(report, allow_nan=False)) == report
     assert sum(s for s, _ in told) == pytest.approx(report["simulated_s"], abs=2.0)
-    assert list(dict.fromkeys(what for _, what in told)) == ["exploring", "goal 1 of 2", "goal 2 of 2"]
+    assert list(dict.fromkeys(what for _, what in told)) == [
+        "exploring",
+        *(f"on the way to goal {n} of 2" for n in (1, 2)),
+    ]
     for goal in report["goals"]:
         assert isinstance(goal["reached"], bool)
         assert goal["path_m"] >= 0
@@ -78,11 +81,11 @@ def test_nothing_simulated_is_a_report_too() -> None:
 
 def test_memory_is_that_of_the_process_without_the_judges_record(monkeypatch: pytest.MonkeyPatch) -> None:
     session = a_session()
-    before = Growth(session).sample(session).rss_mb
+    before = Growth(session).sample().rss_mb
     record = np.ones(30_000_000)  # 240 MB
-    during = Growth(session).sample(session).rss_mb
+    during = Growth(session).sample().rss_mb
     monkeypatch.setattr(Evaluation, "memory_bytes", record.nbytes)  # as if the judge kept that
-    without = Growth(session).sample(session).rss_mb
+    without = Growth(session).sample().rss_mb
     if before is not None and during is not None and without is not None:  # on Linux
         assert (during - before, without - before) == (pytest.approx(240, abs=30), pytest.approx(0, abs=30))
 
@@ -114,7 +117,7 @@ def test_a_goal_that_is_not_reached_in_time_is_given_up(monkeypatch: pytest.Monk
 def test_a_brain_that_grows_too_large_for_a_file_is_told_of_in_time(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(loop, "LOOK_AFTER", 10)
+    monkeypatch.setattr(BrainFile, "LOOK_AFTER", 10)
     monkeypatch.setattr(state_codec, "MOST_BYTES", 1 << 20)
     run_headless(OFFICE, 2, 0.1)
     assert capsys.readouterr().err == ""

@@ -5,8 +5,8 @@ from __future__ import annotations
 
 import pytest
 
-from app.lessons.files import find_lesson
-from app.lessons.performance import Performance, perform_round
+from app.protocol.lesson import find_lesson
+from app.protocol.performance import Performance, perform_round
 from web.messages import LessonMark
 
 pytestmark = pytest.mark.slow

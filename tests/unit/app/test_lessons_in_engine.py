@@ -6,9 +6,8 @@ import pytest
 
 from app.engine.engine import Engine
 from app.engine.lesson_run import MOST_FROM_ONE, Teaching
-from app.lessons.files import find_lesson
-from app.lessons.performance import perform, perform_round, set_scene
-from app.lessons.schema import Lesson
+from app.protocol.lesson import Lesson, find_lesson
+from app.protocol.performance import perform, perform_round, set_scene
 from web import messages as m
 
 from .engines import an_engine, run_for, tell

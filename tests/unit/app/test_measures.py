@@ -9,17 +9,16 @@ import numpy as np
 import pytest
 
 from app.config import Config, Value
+from app.protocol.course import Course, run_ticks
+from app.protocol.measures import MEASURES, Measuring, Packets, measures_for
+from app.protocol.steps import Drive, Explore, Kidnap, Move, Step, Tag, Visit, Wait, Where
 from app.session import Session
-from app.trials.course import Course
-from app.trials.measures import MEASURES
-from app.trials.scores import scores_of
-from app.trials.steps import Drive, Explore, Kidnap, Move, Step, Tag, Visit, Wait, Where
-from app.trials.trial import watched
 from sim2d import load_world
 
 pytestmark = pytest.mark.slow
 
 IDEAL: dict[str, Value] = {"robot.odometry_noise": 0.0, "robot.gyro_bias": 0.0, "robot.odometry_scale_error": 0.0}
+EVERYTHING = [name for kind in MEASURES for name in kind.readings if "_N_" not in name]
 LAPS: list[Where] = ["south-east corner", "north-east corner", "north-west corner", "south-west corner"]
 
 
@@ -28,37 +27,36 @@ def measured(
 ) -> tuple[dict[str, float], Course]:
     config = Config().with_values({**IDEAL, **{name.replace("__", "."): value for name, value in values.items()}})
     course = Course(Session(load_world(world), seed, config), steps)
-    measures = [MEASURES[name](course) for name in names]
-    watched(course, measures)
-    return {name: score for measure in measures for name, score in measure.scores().items()}, course
+    measuring = Measuring(course, [kind for kind in MEASURES if kind.always or kind in measures_for(names)])
+    run_ticks(course, course.ticks(), [measuring.note])
+    return measuring.values(), course
 
 
 def test_measuring_changes_nothing_and_scores_are_those_of_the_judges() -> None:
     steps = Explore(do="explore", minutes=0.5), Kidnap(do="kidnap"), Explore(do="explore", minutes=0.5)
-    (_, alone), (_, with_all) = measured([], *steps), measured(list(MEASURES), *steps)
+    (scores, alone), (_, with_all) = measured([], *steps), measured(EVERYTHING, *steps)
     assert alone.session.state_hash() == with_all.session.state_hash()
-    scores, evaluation = scores_of(alone), alone.session.evaluation
+    evaluation = alone.session.evaluation
     assert scores["kidnaps"] == 1.0
     assert scores["recovered"] == float(evaluation.kidnaps[0].after_s is not None)
     assert scores["error_m"] == evaluation.errors(alone.session.brain.experience_map)[0]
-    assert "goals" not in scores
-    assert all(math.isfinite(value) for value in scores.values())
+    assert (scores["goals"], scores["goal_s"]) == (0.0, math.inf)
 
 
 def test_without_errors_the_packet_ends_where_the_moves_lead() -> None:
     square = Move(do="move", moves=[(0.2, 0, 5), (0, 45, 2), (0.2, 0, 5), (0, -45, 2)])
-    scores, _ = measured(["end point"], square, local_view__enabled=False)
+    scores, _ = measured(["end_off_m"], square, local_view__enabled=False)
     assert scores["end_off_m"] < 0.1
-    off, _ = measured(["end point"], square, local_view__enabled=False, robot__odometry_scale_error=0.5)
+    off, _ = measured(["end_off_m"], square, local_view__enabled=False, robot__odometry_scale_error=0.5)
     assert off["end_off_m"] == pytest.approx(0.5 * math.hypot(1.0, 1.0), abs=0.15)
 
 
 def test_the_turn_of_the_cells_is_that_of_the_robot_less_the_bias() -> None:
     turn = Move(do="move", moves=[(0, 30, 10)])
-    right, _ = measured(["turn of the cells"], turn, local_view__enabled=False)
+    right, _ = measured(["turn_kept"], turn, local_view__enabled=False)
     assert right["turned_deg"] == pytest.approx(300, abs=5)
     assert right["turn_kept"] == pytest.approx(1.0, abs=0.03)
-    biased, _ = measured(["turn of the cells"], turn, local_view__enabled=False, pose_cells__yaw_bias=-math.radians(6))
+    biased, _ = measured(["turn_kept"], turn, local_view__enabled=False, pose_cells__yaw_bias=-math.radians(6))
     assert biased["turn_kept"] == pytest.approx(0.8, abs=0.03)
 
 
@@ -72,7 +70,7 @@ def test_a_robot_that_drove_everywhere_has_covered_the_floor() -> None:
 
 def test_ways_out_and_back_lie_together_where_the_map_is_right() -> None:
     there_and_back = Drive(do="drive", path=["south-east corner", "north-east corner", "south-east corner", "home"])
-    scores, course = measured(["ways apart"], there_and_back)
+    scores, course = measured(["ways_apart_m"], there_and_back)
     assert 0.0 < scores["ways_apart_m"] < 0.6
     map_ = course.session.brain.experience_map
     made = course.session.evaluation.births(len(map_))
@@ -91,7 +89,7 @@ def test_of_a_visit_the_way_taken_the_arbitration_and_the_routes_of_the_goal_mem
     """The way is that of the last visit; the chosen movement ends nearer to the route than the others; and the routes stay when
     a weight changes by a fifth."""
     scores, course = measured(
-        ["way taken", "arbitration", "goal memory routes"],
+        ["chosen_off_m", "route_off_m"],
         Tag(do="tag", places=["north-west corner", "north-east corner"]),
         Drive(do="drive", path=[*LAPS, *LAPS, "north-east corner"]),
         Visit(do="visit", places=["north-east corner", "north-west corner"], timeout_s=120),
@@ -106,10 +104,10 @@ def test_of_a_visit_the_way_taken_the_arbitration_and_the_routes_of_the_goal_mem
 
 def test_consistency_is_the_longest_time_off() -> None:
     drive = Drive(do="drive", path=LAPS)
-    right, _ = measured(["consistency"], drive)
+    right, _ = measured(["longest_off_s"], drive)
     assert (right["longest_off_s"], right["farthest_off_m"]) == (0.0, 0.0)
     carried = Kidnap(do="kidnap", place="north-west corner", heading_deg=-90)
-    wrong, _ = measured(["consistency"], drive, carried, Move(do="move", moves=[(0, 0, 3)]), kidnap__enabled=False,
+    wrong, _ = measured(["longest_off_s"], drive, carried, Move(do="move", moves=[(0, 0, 3)]), kidnap__enabled=False,
                         local_view__enabled=False)  # fmt: skip
     assert wrong["longest_off_s"] == pytest.approx(3.0, abs=0.15)
     assert wrong["farthest_off_m"] == pytest.approx(4.5, abs=0.4)
@@ -120,20 +118,25 @@ def test_false_and_true_snaps_are_all_snaps() -> None:
     eager: dict[str, Any] = {"local_view__capped": False, "local_view__rest": 0.0, "local_view__learn_first": True}
     explore, carried = Explore(do="explore", minutes=3), Kidnap(do="kidnap", least_m=3)
     scores, course = measured(
-        ["false snaps"], explore, carried, explore, world="office", kidnap__enabled=False, **eager
+        ["false_snaps"], explore, carried, explore, world="office", kidnap__enabled=False, **eager
     )
     assert 1 <= scores["false_snaps"] + scores["true_snaps"] <= course.session.brain.relocalisations
+
+
+def told(packets: Measuring) -> tuple[float, float, float]:
+    values = packets.values()
+    return values["packets_at_most"], values["packets_most"], values["rival_s"]
 
 
 def test_packets_are_counted_while_they_compete() -> None:
     """A second packet of a third of the activity is put far away, and taken away after a second."""
     course = Course(Session(load_world("loop"), 3, Config()), [Wait(do="wait", seconds=3.0)])
-    session, packets = course.session, MEASURES["packets"](course)
+    session, packets = course.session, Measuring(course, [Packets])
     cells = session.brain.pose_cells
     for _ in range(10):
         session.tick()
         packets.note()
-    assert packets.scores() == {"packets_at_most": 1.0, "rival_s": 0.0}
+    assert told(packets) == (1.0, 1.0, 0.0)
     _, n_y, n_x = cells.shape
     here = cells.winner
     far = np.array([(round(here.y) + n_y // 2) % n_y * n_x + (round(here.x) + n_x // 2) % n_x], np.int32)
@@ -141,5 +144,5 @@ def test_packets_are_counted_while_they_compete() -> None:
     cells.settle()
     for _ in range(2):
         packets.note()
-        assert packets.scores() == {"packets_at_most": 2.0, "rival_s": pytest.approx(session.frame.dt)}
+        assert told(packets) == (2.0, 2.0, pytest.approx(session.frame.dt))
         cells.place(round(here.x) % n_x, round(here.y) % n_y, 0)

@@ -17,15 +17,15 @@ from app.experiments.figures import draw
 from app.experiments.figures.canvas import svg_of
 from app.experiments.report import check_drawing
 from app.experiments.summary import table_of
-from app.lessons.files import check_lesson, read_lesson
 from app.order_book import Order
+from app.protocol.experiment import Level, Score, read_experiment
+from app.protocol.lesson import check_lesson, read_lesson
 from app.runs.bookmarks import Bookmarks
 from app.runs.header import Beginning, header_of, read_header, written
 from app.runs.order_check import check_order
 from app.situations.page import python_lines
 from app.situations.situation import Situation
 from app.startup.ending import ended
-from app.trials.experiment import Level, Score, read_experiment
 from disk.words import plain, shown
 from sim2d import load_world, world_from_json, world_to_json
 from sim2d.importers import open_world
@@ -46,7 +46,7 @@ NICE = [
 ]  # fmt: skip
 WORLD = load_world("office")
 OFFICE = json.loads(world_to_json(WORLD))
-LESSON = next((Path(__file__).parents[3] / "app" / "lessons" / "catalogue").glob("01-*.toml")).read_text("utf-8")
+LESSON = next((Path(__file__).parents[3] / "app" / "protocol" / "lessons").glob("01-*.toml")).read_text("utf-8")
 
 
 def _world(**changes: object) -> None:

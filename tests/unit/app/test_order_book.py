@@ -11,7 +11,8 @@ import numpy as np
 import pytest
 
 from app.order_book import Order, carry_out
-from app.session import Session, spread_goals
+from app.protocol.steps import spread_goals
+from app.session import Session
 from sim2d import Box, load_world
 
 LIVING = load_world("living")

@@ -16,9 +16,9 @@ import pytest
 
 from app.config import Config
 from app.config.presets import ROBOTS
+from app.protocol.course import Course
+from app.protocol.steps import Move
 from app.session import Session
-from app.trials.course import Course
-from app.trials.steps import Move
 from ratslam_core.params.presets import PRESETS
 from sim2d import load_world
 

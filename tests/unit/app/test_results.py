@@ -9,7 +9,7 @@ import pytest
 
 from app.experiments import results
 from app.experiments.results import gathered, outdated, read_results, results_markdown, write_results
-from app.trials.experiment import catalogue
+from app.protocol.experiment import catalogue
 from tests.unit.app.made_trials import experiment, figure, trials
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from app.engine.engine import Engine
-from app.lessons.conditions import Waiting, read_until
+from app.protocol.conditions import Waiting, read_until
 from app.session import Session
 from app.views.history import History
 

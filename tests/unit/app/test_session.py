@@ -8,7 +8,8 @@ import pytest
 
 from app.config import Config
 from app.pilot.behaviours import Behaviour
-from app.session import Session, spread_goals
+from app.protocol.steps import spread_goals
+from app.session import Session
 from app.views.senses import senses_of
 
 from .sessions import OFFICE, a_session

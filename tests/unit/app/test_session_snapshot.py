@@ -15,7 +15,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from app.session import Session, spread_goals
+from app.protocol.steps import spread_goals
+from app.session import Session
 from app.session_snapshot import load_session, read_session, restore_session, save_session, take_session
 from disk import State, write_state
 from disk.state_codec import LONG

@@ -8,7 +8,7 @@ import pytest
 
 from app.cli.trial import SizeAndAmbiguity
 from app.config import Config
-from app.trials.experiment import EngineName
+from app.protocol.experiment import EngineName
 
 ENGINES: list[EngineName] = ["paper", "ours"]
 

@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.session import Session, spread_goals
+from app.protocol.steps import spread_goals
+from app.session import Session
 from disk.kinds import attributes, is_known
 from ratslam_core import Pose2
 from sim2d import load_world

@@ -8,11 +8,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from app.trials.code_version import code_version
-from app.trials.course import Course
-from app.trials.steps import Explore, Kidnap, Tag, Visit
-from app.trials.trace import EVERY_S, Recorder, Trace, placed, trace_of
-from app.trials.trial import Trial, run_trial, text_of, watched
+from app.code_version import code_version
+from app.protocol.course import Course, run_ticks
+from app.protocol.steps import Explore, Kidnap, Tag, Visit
+from app.protocol.trace import EVERY_S, Recorder, Trace, placed, trace_of
+from app.protocol.trial import Trial, run_trial, text_of
 from ratslam_core import Pose2
 from sim2d.importers import open_world
 
@@ -28,7 +28,7 @@ PROTOCOL = (
 )
 MADE = Trial(
     "made", "ours", (), 3, "office", text_of(WORLD), {"pose_cells.n_x": 8, "pose_cells.n_y": 8}, PROTOCOL,
-    ("packets",), code_version(),
+    ("Packets",), code_version(),
 )  # fmt: skip
 TO_A_GOAL = replace(
     MADE,
@@ -51,7 +51,7 @@ def watched_run() -> tuple[Course, Recorder]:
     """A course that went to its goals, and its recorder."""
     course = TO_A_GOAL.begin()
     recorder = Recorder(course)
-    watched(course, [recorder])
+    run_ticks(course, course.ticks(), [recorder.note])
     return course, recorder
 
 

@@ -11,8 +11,8 @@ from app.commands import carry_out
 from app.commands.table import COMMANDS
 from app.engine.engine import Engine
 from app.engine_thread import EngineThread
-from app.trials.experiment import find_experiment
-from app.trials.trial import Trial, run_trial
+from app.protocol.experiment import find_experiment
+from app.protocol.trial import Trial, run_trial
 from web import messages as m
 
 from .engine_threads import accept, refuse, snapshot, wait_for

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from app.experiments.store import Outcome
-from app.trials.experiment import Experiment
-from app.trials.scores import Moment
-from app.trials.steps import Wait
-from app.trials.trial import Result, Trial
+from app.protocol.course import Moment
+from app.protocol.experiment import Experiment
+from app.protocol.steps import Wait
+from app.protocol.trial import Result, Trial
 
 SMALL = Experiment.model_validate({
     "name": "small", "title": "Small", "paper": "none", "asks": "Does it count?", "found": "It does.",

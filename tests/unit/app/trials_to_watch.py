@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from app.trials.experiment import Experiment, chosen_trial, find_experiment
-from app.trials.trial import Trial
+from app.protocol.experiment import Experiment, chosen_trial, find_experiment
+from app.protocol.trial import Trial
 
 SHORT = {
     "name": "short",
