@@ -42,16 +42,11 @@ def after_order(engine: Engine, command: CommandModel) -> None:
         # What somebody sets is wanted in the next run, too; what the trial or lesson had set goes with it.
         one = isinstance(command, m.SetParameter)
         engine.run.config_before = before.with_values({command.name: command.value} if one else values_of(command.name))
-    trial, lesson = engine.run.trial, engine.run.lesson
-    if command.ends:
-        if lesson is not None:
-            lesson.ordered(command.ends)
-        if trial is not None:
-            trial.end(command.ends)
-    elif command.alters:
-        for watched in (lesson, trial):
-            if watched is not None:
-                watched.alter()
+    for guide in engine.run.guides:
+        if command.ends:
+            guide.ordered(command.ends)
+        elif command.alters:
+            guide.alter()
 
 
 def _wrong(experiment: Experiment, command: m.WatchExperiment) -> m.Refused | None:

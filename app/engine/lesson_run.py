@@ -7,6 +7,7 @@ import math
 from dataclasses import dataclass, field
 
 from app.config import Config
+from app.engine.guide import Guide
 from app.protocol.lesson import Lesson, Measured, told
 from app.protocol.performance import Performance
 from app.session import Session
@@ -14,7 +15,7 @@ from app.views.history import History
 from web.messages import Inspect, LessonOutcome, LessonPrediction, LessonState, LessonView, LessonVotes
 
 
-class LessonRun:
+class LessonRun(Guide):
     """Call `before_tick` before each tick and `advance` after it. What is shown is the same, bit for bit, without a page."""
 
     def __init__(
@@ -26,7 +27,7 @@ class LessonRun:
         self.teaching, self._session, self._history = teaching, session, history
         self._performance = None if branch else Performance(teaching.lesson, teaching.number, session, history)
         self.state: LessonState = "sandbox" if branch else "scene"
-        self.altered, self.runs_ahead = branch, not branch
+        self.altered, self._ahead = branch, not branch
         self.pauses = False  # it wants to be looked at in peace
         self.inspects: Inspect | None = None  # what is to be inspected now
         self._at_once, self._doing = at_once, "another branch: play freely" if branch else ""
@@ -35,6 +36,10 @@ class LessonRun:
         if teaching.number == 0:
             history.log.note("lesson", f"{teaching.lesson.title}: the scene is set")
         self.advance()
+
+    @property
+    def runs_ahead(self) -> bool:
+        return self._ahead
 
     @property
     def speed(self) -> float:
@@ -61,7 +66,6 @@ class LessonRun:
                 self._session.set_mode("explore")
 
     def advance(self) -> None:
-        """Give the robot its orders for the next tick, and note what has happened."""
         performance = self._performance
         if performance is None or self.state not in ("scene", "showing"):
             return
@@ -71,7 +75,7 @@ class LessonRun:
             self._break_off(f"it cannot go on: {error}")
             return
         if performance.phase == "ready" and self.state == "scene":
-            self.runs_ahead, self.state = False, "predict"
+            self._ahead, self.state = False, "predict"
             if self._at_once:
                 self.show()
             else:
@@ -92,7 +96,7 @@ class LessonRun:
             self._break_off(f"it cannot go on: {error}")
 
     def stop_running_ahead(self) -> None:
-        self.runs_ahead = False
+        self._ahead = False
 
     # ------------------------------------------------------------ what others do
 
@@ -156,7 +160,7 @@ class LessonRun:
         self.inspects = None if event is None else Inspect(type="inspect", event=event)
 
     def _break_off(self, why: str) -> None:
-        self.state, self.runs_ahead, self._doing = "sandbox", False, f"broken off: {why}"
+        self.state, self._ahead, self._doing = "sandbox", False, f"broken off: {why}"
         self._history.log.note("lesson", f"{self.teaching.lesson.title} is broken off: {why}")
 
     def _play_freely(self) -> None:

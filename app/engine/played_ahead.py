@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from app.engine.guide import Guide
 from app.order_book import Order, carry_out
 from app.session import Session
 from app.situations import Situation
@@ -41,7 +42,7 @@ def events_of(order: Order, session: Session) -> list[tuple[EventKind, str]]:
     return [("office", _OFFICE[name].format_map(values))] if name in _OFFICE else []
 
 
-class PlayedAhead:
+class PlayedAhead(Guide):
     """Call `advance` at the beginning and after each tick. before: the run that waits until this one is at its moment."""
 
     def __init__(

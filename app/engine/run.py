@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from app.config import Config
+from app.engine.guide import Guide
 from app.engine.lesson_run import LessonRun
 from app.engine.played_ahead import PlayedAhead
 from app.engine.waiting import RunUntil
@@ -72,46 +73,40 @@ class Run:
         self.snapshots.walk = None
         if self.until is not None and not self.until.runs_ahead:
             self.until = None
-        if self.lesson is not None:
-            self.lesson.before_tick()
+        for guide in self.guides:
+            guide.before_tick()
         self.session.tick(recorder)
         require_finite(self.session)
         if self.book is not None:
             self.book.tick(self.session)
         self.history.watch()
-        if self.machine is not None:  # before the orders of the trial, which come after this tick
+        if self.machine is not None:  # before the guides' orders, which come after this tick
             self.machine.ticked()
-        if self.trial is not None:
-            self.trial.advance()
-        if self.lesson is not None:
-            self.lesson.advance()
-        if self.until is not None:
-            self.until.ticked()
-        if self.ahead is not None:
-            self.ahead.advance()
+        for guide in self.guides:
+            guide.advance()
 
     @property
     def runs_ahead(self) -> bool:
-        """Whether trial, lesson, situation or `run_until` want it to run as fast as possible."""
-        return any(part.runs_ahead for part in self._ahead)
+        """Whether a guide wants it to run as fast as possible."""
+        return any(guide.runs_ahead for guide in self.guides)
 
     def stop_running_ahead(self) -> None:
-        for part in self._ahead:
-            part.stop_running_ahead()
+        for guide in self.guides:
+            guide.stop_running_ahead()
 
     def takes_pause(self) -> bool:
-        """Whether lesson or `run_until` have come to something that is to be looked at in peace. Asked once, it is over."""
-        pausing = [part for part in (self.lesson, self.until) if part is not None and part.pauses]
-        for part in pausing:
-            part.pauses = False
+        """Whether a guide has come to something that is to be looked at in peace. Asked once, it is over."""
+        pausing = [guide for guide in self.guides if guide.pauses]
+        for guide in pausing:
+            guide.pauses = False
         if self.lesson is not None and self.lesson.inspects is not None:
             self.snapshots.inspected, self.lesson.inspects = self.lesson.inspects, None
             self.snapshots.refresh()  # that of this tick may have been built already
         return bool(pausing)
 
     @property
-    def _ahead(self) -> list[WatchedTrial | LessonRun | RunUntil | PlayedAhead]:
-        return [part for part in (self.trial, self.lesson, self.until, self.ahead) if part is not None]
+    def guides(self) -> list[Guide]:
+        return [guide for guide in (self.trial, self.lesson, self.until, self.ahead) if guide is not None]
 
     def require_showable(self) -> None:
         """Build a snapshot, to raise what would be raised later."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections import deque
 
+from app.engine.guide import Guide
 from app.protocol.conditions import Until, Waiting
 from app.session import Session
 from app.views.history import History
@@ -38,21 +39,20 @@ class Steps:
         return ended
 
 
-class RunUntil:
-    """Call `ticked` after each tick. [ours] A run is the same, whether it is waited for something or not. test_run_until.py."""
+class RunUntil(Guide):
+    """[ours] A run is the same, whether it is waited for something or not. test_run_until.py."""
 
     def __init__(self, until: Until, within_s: float, session: Session, history: History) -> None:
         """ValueError: it cannot happen, as things are."""
         self._waiting, self._session, self._history = Waiting(until, session, history), session, history
         self._began_s, self._within_s, self._words = session.time_s, within_s, until.words
         self._state: UntilState = "running"
-        self.pauses = False
 
     @property
     def runs_ahead(self) -> bool:
         return self._state == "running"
 
-    def ticked(self) -> None:
+    def advance(self) -> None:
         if not self.runs_ahead:
             return
         passed_s = self._session.time_s - self._began_s

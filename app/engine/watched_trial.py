@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from app.engine.guide import Guide
 from app.protocol.course import Course
 from app.protocol.trial import Trial
 from app.views.event_log import EventLog
@@ -12,7 +13,7 @@ CHANGED = "the program has changed since this trial was run: what it does today 
 _UNTOLD = ("recovered", "end")  # the log tells of the first anyway, and of the second together with the outcome
 
 
-class WatchedTrial:
+class WatchedTrial(Guide):
     """Call `advance` after each tick. The run is the same, bit for bit, as that of the trial by itself."""
 
     def __init__(self, trial: Trial, title: str, course: Course, log: EventLog, moment_s: float | None = None) -> None:
@@ -21,7 +22,7 @@ class WatchedTrial:
         self.state: TrialState = "running"
         self.doing = self.outcome = ""
         self.altered = False
-        self._log, self._told = log, 0
+        self._log = log
         self._about_s = trial.about_s
         self._ahead_s = None if moment_s is None or moment_s <= BEFORE_S else moment_s - BEFORE_S
         self._ticks = course.ticks()
@@ -44,7 +45,7 @@ class WatchedTrial:
         except StopIteration:
             over = True
         except ValueError as error:  # what it needs is no longer there
-            self.end(f"it cannot go on: {error}")
+            self.ordered(f"it cannot go on: {error}")
         self._note_moments()
         if over:
             self.state, self.outcome, self._ahead_s = "over", outcome_of(self.course), None
@@ -55,15 +56,14 @@ class WatchedTrial:
     def stop_running_ahead(self) -> None:
         self._ahead_s = None
 
-    def end(self, why: str) -> None:
-        """End it before it is over; the robot goes on."""
+    def ordered(self, why: str) -> None:
+        """It ends before it is over; the robot goes on."""
         if self.state == "running":
             self.state, self.outcome = "ended", why
             self._ahead_s = None
             self._log.note("trial", f"{self.trial.experiment} ends: {why}")
 
     def alter(self) -> None:
-        """Somebody has changed something else than the robot's orders: it goes on, but is no longer the trial that it was."""
         if self.state == "running" and not self.altered:
             self.altered = True
             self._log.note("trial", f"{self.trial.experiment} was changed by hand: from here on it is another run")
@@ -78,12 +78,9 @@ class WatchedTrial:
         )  # fmt: skip
 
     def _note_moments(self) -> None:
-        for moment in self.course.moments[self._told :]:
-            if moment.kind == "step":
-                self._log.note("trial", moment.words)
-            elif moment.kind not in _UNTOLD:
-                self._log.note(moment.kind, moment.words)
-        self._told = len(self.course.moments)
+        for moment in self.course.untold():
+            if moment.kind not in _UNTOLD:
+                self._log.note("trial" if moment.kind == "step" else moment.kind, moment.words)
 
 
 def outcome_of(course: Course) -> str:

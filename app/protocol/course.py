@@ -81,6 +81,7 @@ class Course:
         self.visits: list[Visited] = []
         self.moments: list[Moment] = []
         self.met_at_s = math.inf  # when what was waited for happened
+        self._told = 0
         check_steps(session, self.steps)
 
     def ticks(self) -> Iterator[str]:
@@ -92,6 +93,11 @@ class Course:
         """The same for some steps, without an end."""
         for step in steps:
             yield from step.carry_out(self)
+
+    def untold(self) -> list[Moment]:
+        """What was written down since this was asked last."""
+        new, self._told = self.moments[self._told :], len(self.moments)
+        return new
 
     @property
     def deciding(self) -> Moment:

@@ -40,7 +40,6 @@ class Performance:
         self.doing = "the scene is set"
         self._shown = [*(lesson.rounds[number].steps if lesson.rounds else []), *lesson.show.steps]
         self.course = Course(session, [*lesson.scene.steps, *self._shown])
-        self._told = 0  # of the course's moments
         self._ticks: Iterator[str] = self.course.ticks_of(lesson.scene.steps)
         self._scene_s = max(0.1, sum(step.about_s() for step in lesson.scene.steps))
         self._waiting: Waiting | None = None
@@ -146,10 +145,9 @@ class Performance:
     def _next(self) -> bool:
         """Give the robot its orders for the next tick. False if there are none any more."""
         doing = next(self._ticks, None)
-        for moment in self.course.moments[self._told :]:
+        for moment in self.course.untold():
             if moment.kind != "recovered":  # the log tells of it anyway
                 self.history.log.note("lesson" if moment.kind in ("step", "end") else moment.kind, moment.words)
-        self._told = len(self.course.moments)
         self.doing = self.doing if doing is None else doing
         return doing is not None
 
