@@ -40,7 +40,6 @@ def definition_digest(experiment: Experiment) -> str:
         "engines",
         "axes",
         "protocol",
-        "measures",
         "scores",
         "original",
     }
