@@ -14,9 +14,8 @@ import time
 from pathlib import Path
 from typing import Any
 
-from app.experiments.runner import pending, run_trials
+from app.experiments.pool import connected_to, pending, run_trials
 from app.experiments.store import Store
-from app.experiments.workers import connected_to
 from app.protocol.course import Moment
 from app.protocol.experiment import find_experiment
 from app.protocol.trial import Result, Trial

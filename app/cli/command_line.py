@@ -8,48 +8,43 @@ from __future__ import annotations
 import argparse
 import json
 import sys
+from importlib import import_module
 from itertools import chain
 from pathlib import Path
 from typing import Any
 
-from app.cli.deliver import add_deliver
-from app.cli.experiment import add_experiment
-from app.cli.export import add_export
-from app.cli.headless import add_headless
-from app.cli.lessons import add_lessons
 from app.cli.options import Verbs, add_config_options, config_of
-from app.cli.recording import add_recording
-from app.cli.run import add_run
-from app.cli.runs import add_replay, add_runs
-from app.cli.trial import add_trial
-from app.cli.worlds import add_worlds
 from app.startup.ending import ended
 from disk import require_writable, write_whole
 
 
 def main(argv: list[str] | None = None) -> int:
     """Run one command and return its exit code; ending.py says what the codes mean."""
-    parser = parser_of_all()
     arguments = list(sys.argv[1:] if argv is None else argv)
     if not arguments or (arguments[0].startswith("-") and arguments[0] not in ("-h", "--help")):
         arguments.insert(0, "run")
-    args = parser.parse_args(arguments)
+    args = parser_of(arguments[0]).parse_args(arguments)
     return ended(lambda: args.do(args))
 
 
-def parser_of_all() -> argparse.ArgumentParser:
-    """Understands every command, and carries out none."""
+VERBS = {
+    "run": "run", "runs": "runs", "replay": "runs", "headless": "headless", "deliver": "deliver", "trial": "trial",
+    "experiment": "experiment", "lessons": "lessons", "export": "export", "recording": "recording", "worlds": "worlds",
+    "config": "command_line", "bench": "command_line",
+}  # fmt: skip
+"""Each verb, and the file of app/cli that adds it, which is read only when it is asked for."""
+
+
+def parser_of(verb: str = "") -> argparse.ArgumentParser:
+    """Understands this verb, or every one if it is none of them, and carries out nothing."""
     parser = argparse.ArgumentParser(prog="ratslam", description="RatSLAM, alive in a browser.")
     commands = parser.add_subparsers(title="commands", required=True)
-    for add in (
-        *(add_run, add_runs, add_replay, add_headless, add_deliver, add_trial, add_experiment, add_lessons),
-        *(add_export, add_recording, add_worlds, _add_config, _add_bench),
-    ):
-        add(commands)
+    for each in [verb] if verb in VERBS else VERBS:
+        getattr(import_module(f"app.cli.{VERBS[each]}"), f"add_{each}")(commands)
     return parser
 
 
-def _add_config(commands: Verbs) -> None:
+def add_config(commands: Verbs) -> None:
     config = commands.add_parser("config", help="print every parameter as TOML with symbol, unit and source")
     pages = config.add_mutually_exclusive_group()
     pages.add_argument("--table", action="store_true", help="print them as Markdown tables instead")
@@ -75,7 +70,7 @@ def _config(args: argparse.Namespace) -> int:
     return 0
 
 
-def _add_bench(commands: Verbs) -> None:
+def add_bench(commands: Verbs) -> None:
     bench = commands.add_parser("bench", help="measure the speed of the engine, each part beside a reference")
     bench.add_argument("--json", type=Path, metavar="FILE", help="also write the rows to FILE as JSON")
     bench.add_argument("--quick", action="store_true", help="small sizes, to see that all of it works")

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import argparse
+import sys
+import textwrap
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,6 +15,7 @@ from disk.limits import TRIALS
 if TYPE_CHECKING:
     from app.protocol.experiment import Experiment
 
+WIDTH = 100
 _RESERVED = ("all", "check", "open", "results")
 
 
@@ -61,9 +64,7 @@ def _experiment(args: argparse.Namespace) -> int:
     _check(args)
     match args.what:
         case []:
-            from app.cli.experiment_list import list_experiments
-
-            return list_experiments(args)
+            return _list(args)
         case ["open", trial_id]:
             return _open(trial_id, args)
         case ["check", file]:
@@ -102,13 +103,50 @@ def _check(args: argparse.Namespace) -> None:
     require_writable("--csv", args.csv)
 
 
-def _open(trial_id: str, args: argparse.Namespace) -> int:
-    import sys
+def _list(args: argparse.Namespace) -> int:
+    """Paper and figure, what each asks, and how long it takes here: measured where trials were run before."""
+    from app.experiments.pool import cores, duration_of, time_words
+    from app.protocol.experiment import catalogue
 
+    workers, total_s = args.workers or cores(), 0.0
+    measured_of = _measured(args.store, args.quick)
+    for experiment in catalogue():
+        measured = measured_of.get(experiment.name, {})
+        duration = duration_of(experiment, experiment.how_many(args.trials, args.quick), measured, args.quick)
+        total_s += duration.seconds / workers
+        _tell(experiment, f"{duration.trials} trials, {duration.words(workers)}")
+    print(f"\nAll together: {time_words(total_s)} with {workers} {'worker' if workers == 1 else 'workers'}.")
+    print(
+        "`ratslam experiment NAME` runs one, `ratslam experiment all` every one; what was run before is not run again."
+    )
+    return 0
+
+
+def _measured(path: Path | None, quick: bool) -> dict[str, dict[str, float]]:
+    """Wall seconds of a trial by experiment and engine. A store that cannot be read is told of, and nothing is known then."""
+    from app.experiments.store import Store, default_path
+    from app.protocol.experiment import names
+
+    try:
+        path = path or default_path()
+        if path.is_file():
+            with Store(path, reading=True) as store:
+                return {name: store.seconds(name, quick) for name in names()}
+    except ValueError as error:
+        print(f"ratslam: note: {error}", file=sys.stderr)
+    return {}
+
+
+def _tell(experiment: Experiment, duration: str) -> None:
+    print(f"{experiment.name}: {experiment.title} ({experiment.paper})")
+    print(textwrap.fill(experiment.asks, WIDTH, initial_indent="    ", subsequent_indent="    "))
+    print(f"    {duration}")
+
+
+def _open(trial_id: str, args: argparse.Namespace) -> int:
     from app.cli.run import run_with_trial
     from app.cli.serving import Serving
-    from app.experiments.opening import open_trial
-    from app.experiments.store import Store
+    from app.experiments.store import Store, open_trial
 
     with Store(args.store, reading=True) as store:
         opened = open_trial(trial_id, store)

@@ -17,11 +17,10 @@ from app.cli.experiment import check_whole
 from app.cli.progress import compile_first
 from app.experiments.export import write_csv
 from app.experiments.live import LiveTable
+from app.experiments.pool import Duration, Workers, duration_of, pending, run_trials, time_words
 from app.experiments.report import Report, make_folder, write_index, write_outputs
-from app.experiments.runner import Duration, duration_of, pending, run_trials, time_words
 from app.experiments.store import Store
 from app.experiments.summary import summarise, table_of
-from app.experiments.workers import Workers
 from app.protocol.experiment import EngineName, Experiment, catalogue, find_experiment
 from app.protocol.trial import Trial
 
@@ -115,7 +114,7 @@ def _finish(
     Console(soft_wrap=True).print(table_of(experiment, summarise(experiment, stored)))
     for trial in [trial for trial in stored if trial.error][:3]:
         print(f"trial {trial.id} failed: {trial.error}; the next command runs it again")
-    table, report = write_outputs(experiment, stored, folder, workers, command=command, quick=args.quick)
+    table, report = write_outputs(experiment, plan.trials, stored, folder, workers, command=command)
     if not args.quick:
         _show_in_gallery(report.figures, store.path.parent / "figures")
     print(f"page: {report.page}\nfigures: {folder / 'figures'}\ntable: {table}\n", flush=True)

@@ -11,7 +11,7 @@ from rich.console import Console, Group
 from rich.live import Live
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
-from app.experiments.runner import time_words
+from app.experiments.pool import time_words
 from app.experiments.store import Outcome, StoredTrial
 from app.experiments.summary import CellKey, CellSummary, place_in, summarise, table_of
 from app.protocol.experiment import Experiment

@@ -10,10 +10,10 @@ from app.experiments.export import write_csv
 from app.experiments.figures import NEED_TRACES, draw, wanted
 from app.experiments.figures.canvas import png_of, svg_of
 from app.experiments.figures.material import Drawn, Material
-from app.experiments.page.page import Entry, index_of, page_of, picture_of
+from app.experiments.page import Entry, index_of, page_of, picture_of
+from app.experiments.pool import Workers
 from app.experiments.store import StoredTrial
 from app.experiments.summary import found, table_of
-from app.experiments.workers import Workers
 from app.protocol.experiment import Experiment
 from app.protocol.trace import Trace
 from app.protocol.trial import Trial
@@ -30,31 +30,34 @@ class Report:
 
 
 def write_outputs(
-    experiment: Experiment, stored: Sequence[StoredTrial], folder: Path, workers: Workers, *, command: str, quick: bool
-) -> tuple[Path, Report]:
-    """The table and the report. stored: the trials that were run; workers: run those again that the figures show."""
+    experiment: Experiment, trials: Sequence[Trial], stored: Sequence[StoredTrial], folder: Path, workers: Workers, *,
+    command: str,
+) -> tuple[Path, Report]:  # fmt: skip
+    """The table and the report. stored: what came of the trials; workers: run those again that the figures show."""
     table = folder / f"{experiment.name}.csv"
     write_csv(table, experiment, stored)
-    return table, write_report_page(experiment, list(stored), folder, workers.traces, command=command, quick=quick)
+    known = {trial.id: trial for trial in trials}
+    return table, write_report_page(
+        experiment, list(stored), folder, lambda ids: workers.traces([known[each] for each in ids]), command=command
+    )
 
 
 def write_report_page(
     experiment: Experiment,
     trials: list[StoredTrial],
     out: Path,
-    traces: Callable[[list[Trial]], list[Trace]],
+    traces: Callable[[list[str]], list[Trace]],
     *,
     command: str,
-    quick: bool = False,
 ) -> Report:
     """Write `NAME.html` into `out`, and each figure as SVG and PNG into `out/figures`.
 
-    trials: those of this experiment, in any order; traces: runs some of them again, in the order given; quick: whether
-    they are those of the shortened experiment. ValueError names an experiment and figure whose options do not fit.
+    trials: those of this experiment, in any order; traces: runs some of them again, by their ids, in the order given.
+    ValueError names an experiment and figure whose options do not fit.
     """
     good = sorted((t for t in trials if not t.error), key=lambda t: (t.seed, t.engine, t.levels))
     material = Material(experiment, good)
-    drawn = _figures_of(material, traces, quick) if good else []
+    drawn = _figures_of(material, traces) if good else []
     folder = out / "figures"
     folder.mkdir(parents=True, exist_ok=True)
     written: list[Path] = []
@@ -69,24 +72,12 @@ def write_report_page(
     return Report(page, written, Entry(experiment, page.name, found(experiment, material.cells), picture, len(good)))
 
 
-def _figures_of(material: Material, traces: Callable[[list[Trial]], list[Trace]], quick: bool) -> list[Drawn]:
+def _figures_of(material: Material, traces: Callable[[list[str]], list[Trace]]) -> list[Drawn]:
     """All figures of an experiment; the trials that they show are run again, each once."""
     experiment = material.experiment
     ids = list(dict.fromkeys(each for spec in experiment.figures for each in wanted(spec, material)))
-    known = trials_by_id(experiment, material.trials, quick=quick)
-    missing = [each for each in ids if each not in known]
-    if missing:
-        raise ValueError(
-            f"trial {missing[0]} of {experiment.name} is of another version of the program or the experiment"
-        )
-    material.traces.update({trace.trial.id: trace for trace in traces([known[each] for each in ids])} if ids else {})
+    material.traces.update({trace.trial.id: trace for trace in traces(ids)} if ids else {})
     return [draw(spec, material) for spec in experiment.figures]
-
-
-def trials_by_id(experiment: Experiment, stored: list[StoredTrial], *, quick: bool = False) -> dict[str, Trial]:
-    """The trials as they are run, found by the ids of those that are stored."""
-    most = max((trial.seed for trial in stored), default=experiment.seed) - experiment.seed + 1
-    return {trial.id: trial for trial in experiment.make_trials(trials=max(most, 1), quick=quick)}
 
 
 def write_index(reports: list[Report], out: Path, command: str) -> Path:

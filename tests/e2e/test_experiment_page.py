@@ -8,7 +8,6 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Browser, Page, expect
 
-from app.experiments import report
 from app.experiments.report import write_report_page
 from tests.e2e.layout import findings
 from tests.unit.app.made_trials import experiment, figure, trace, trials
@@ -27,10 +26,8 @@ def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
     )
     stored = trials(made)
     traces = {each.id: trace(each, made) for each in stored}
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(report, "trials_by_id", lambda *_, **__: {name: each.trial for name, each in traces.items()})
-        out = tmp_path_factory.mktemp("page")
-        return write_report_page(made, stored, out, lambda ts: [traces[t.id] for t in ts], command="ratslam").page
+    out = tmp_path_factory.mktemp("page")
+    return write_report_page(made, stored, out, lambda ids: [traces[each] for each in ids], command="ratslam").page
 
 
 @pytest.fixture

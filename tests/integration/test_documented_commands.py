@@ -21,7 +21,7 @@ import numpy as np
 import orjson
 import pytest
 
-from app.cli.command_line import parser_of_all
+from app.cli.command_line import parser_of
 from tests.e2e.program import Program
 from tests.patience import PATIENCE_S
 from tests.recordings import tub
@@ -221,7 +221,7 @@ def test_what_is_documented_is_understood() -> None:
     wrong: list[str] = []
     for command in (each for line in RUN for each in re.findall(r"(?:^|&& |; )ratslam ([^;&|>]*)", line)):
         try:
-            parser_of_all().parse_args(shlex.split(command) or ["run"])
+            parser_of().parse_args(shlex.split(command) or ["run"])
         except SystemExit as end:
             wrong += [command] * (end.code != 0)
     assert wrong == []

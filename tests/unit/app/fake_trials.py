@@ -7,9 +7,8 @@ import os
 import sys
 from pathlib import Path
 
-from app.experiments.runner import pending, run_trials
+from app.experiments.pool import connected_to, pending, run_trials
 from app.experiments.store import Store
-from app.experiments.workers import connected_to
 from app.protocol.trial import Result, Trial
 from app.startup.ending import ended, obey_signals
 from tests.unit.app.trial_makers import make_outcome, make_trial

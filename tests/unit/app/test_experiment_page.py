@@ -9,10 +9,9 @@ from html.parser import HTMLParser
 
 import pytest
 
-from app.experiments import report
 from app.experiments.figures import draw
 from app.experiments.figures.canvas import svg_of
-from app.experiments.page.page import inlined
+from app.experiments.page import inlined
 from app.experiments.report import write_index, write_report_page
 from app.experiments.summary import found
 from tests.unit.app.made_trials import experiment, figure, material, trace, trials
@@ -58,12 +57,10 @@ def written(out):
     known, asked = {t.id: trace(t, made) for t in stored}, []
 
     def traces(wanted):
-        asked.append([each.id for each in wanted])
-        return [known[each.id] for each in wanted]
+        asked.append(wanted)
+        return [known[each] for each in wanted]
 
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(report, "trials_by_id", lambda *_, **__: {name: each.trial for name, each in known.items()})
-        return write_report_page(made, stored, out, traces, command=COMMAND), stored, asked
+    return write_report_page(made, stored, out, traces, command=COMMAND), stored, asked
 
 
 @pytest.fixture(scope="module")
@@ -152,11 +149,8 @@ def test_sentences_say_the_numbers_of_the_summary():
     assert f"{ours.value:.0%}".replace("%", " %") in says[2]
 
 
-def test_without_trials_the_page_says_so_and_none_of_another_version_is_run_again_unseen(tmp_path):
+def test_without_trials_the_page_says_so(tmp_path):
     made = experiment(figures=[figure("survival", score="after")])
     report = write_report_page(made, [], tmp_path, lambda _: [], command="x")
     assert "Nothing: no trial has been run." in report.page.read_text()
     assert report.figures == []
-    made = experiment(figures=[figure("maps", show="path")])
-    with pytest.raises(ValueError, match="trial 0000000000000000 of made is of another version"):
-        write_report_page(made, trials(made), tmp_path, lambda _: [], command="x")

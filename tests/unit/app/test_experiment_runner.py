@@ -20,9 +20,8 @@ import pytest
 from distributed import Client
 from distributed.security import Security
 
-from app.experiments.runner import pending, run_trials
+from app.experiments.pool import connected_to, pending, run_trials
 from app.experiments.store import Outcome, Store
-from app.experiments.workers import connected_to
 from app.protocol.trial import Trial
 from tests.unit.app import fake_trials
 from tests.unit.app.fake_trials import DEADLY, FAILING
@@ -147,12 +146,12 @@ def test_nobody_without_the_keys_of_the_run_is_heard_by_any_process_of_our_clust
 
 def test_schedulers_that_are_refused(client: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     """One that does not answer, and workers of another version."""
-    monkeypatch.setattr("app.experiments.workers.FIND_S", 0.5)
+    monkeypatch.setattr("app.experiments.pool.FIND_S", 0.5)
     silent = r"--scheduler tcp://127\.0\.0\.1:9: no Dask scheduler answers"
     with pytest.raises(ValueError, match=silent), connected_to("tcp://127.0.0.1:9", None):
         pass
-    monkeypatch.setattr("app.experiments.workers.FIND_S", PATIENCE_S)
-    monkeypatch.setattr("app.experiments.workers._here", lambda: "0123456789ab")
+    monkeypatch.setattr("app.experiments.pool.FIND_S", PATIENCE_S)
+    monkeypatch.setattr("app.experiments.pool._here", lambda: "0123456789ab")
     old, address = r"runs version .* of this program, not 0123456789ab", client.cluster.scheduler_address
     with keys_of(client), pytest.raises(ValueError, match=old), connected_to(address, None):
         pass

@@ -13,9 +13,8 @@ import pytest
 
 from app.experiments.export import table_of, write_csv
 from app.experiments.live import LiveTable
-from app.experiments.opening import open_trial
-from app.experiments.runner import duration_of, time_words
-from app.experiments.store import Outcome, Store, StoredTrial
+from app.experiments.pool import duration_of, time_words
+from app.experiments.store import Outcome, Store, StoredTrial, open_trial
 from app.experiments.summary import Estimate, summarise, wilson, words
 from app.protocol.experiment import Score
 from tests.unit.app.trial_makers import SMALL, make_outcome, make_trial

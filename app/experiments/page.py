@@ -86,7 +86,7 @@ def picture_of(drawn: Drawn, prefix: str) -> str:
 
 
 def _template(name: str) -> Any:
-    loader = FileSystemLoader(Path(__file__).parent)
+    loader = FileSystemLoader(Path(__file__).with_name("templates"))
     environment = Environment(
         loader=loader, autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
     )
