@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from app.commands.outcome import Outcome, attempt
+from app.commands.outcome import Outcome
 from app.companion import Companion
 from app.config import Config, Value
 from app.config.pairs import engine_of, pair_of
@@ -64,7 +64,10 @@ def compare_brains(engine: Engine, command: m.CompareBrains) -> Outcome:
         return m.Refused("pair" if command.values is None else "values", command.pair or command.values, str(error))
     if changed == config:
         return m.Refused("values", command.values, "the first brain has these parameters already: nothing would differ")
-    return attempt("since", command.since, lambda: _begin(engine, command.since, first, second, values))
+    if command.since == "beginning":
+        _restart(engine)
+    _give(engine, first, second, values, anew=command.since == "beginning")
+    return None
 
 
 def end_comparison(engine: Engine, _: m.EndComparison) -> Outcome:
@@ -72,12 +75,9 @@ def end_comparison(engine: Engine, _: m.EndComparison) -> Outcome:
     session = engine.run.session
     words = None if session.companion is None else figures_of(engine)
 
-    def end() -> None:
-        session.end_companion()
-        engine.run.history.watch_companion()
-        engine.run.event_log.note("brain", f"the comparison ends: {words}")
-
-    return attempt("type", "end_comparison", end)
+    session.end_companion()
+    engine.run.history.watch_companion()
+    engine.run.event_log.note("brain", f"the comparison ends: {words}")
 
 
 def begin_again(engine: Engine, before: Companion | None) -> None:
@@ -112,12 +112,6 @@ def _wanted(command: m.CompareBrains, config: Config) -> tuple[str, str, Mapping
     return engine_of(config), command.name or "otherwise", command.values or {}
 
 
-def _begin(engine: Engine, since: str, first: str, second: str, values: Mapping[str, Value]) -> None:
-    if since == "beginning":
-        _restart(engine)
-    _give(engine, first, second, values, anew=since == "beginning")
-
-
 def _restart(engine: Engine) -> None:
     """The same again: a trial that is watched, a recording, or a run in the same world with the same seed and parameters."""
     run = engine.run
@@ -143,11 +137,8 @@ def _give(engine: Engine, first: str, second: str, values: Mapping[str, Value], 
 def inject_packet(engine: Engine, command: InjectPacket) -> Outcome:
     run, c = engine.run, command
 
-    def inject() -> None:
-        run.event_log.note("packet", run.session.put_packet(c.x, c.y, c.heading_rad, c.share))
-        run.snapshots.walk = None  # it shows the pose cells as they were before the packet
-
-    return attempt("x, y", (c.x, c.y), inject)
+    run.event_log.note("packet", run.session.put_packet(c.x, c.y, c.heading_rad, c.share))
+    run.snapshots.walk = None  # it shows the pose cells as they were before the packet
 
 
 def set_parameter(engine: Engine, command: m.SetParameter) -> Outcome:
@@ -163,9 +154,6 @@ def set_parameter(engine: Engine, command: m.SetParameter) -> Outcome:
 
 
 def use_preset(engine: Engine, command: m.UsePreset) -> Outcome:
-    def use() -> None:
-        waiting = engine.run.session.set_parameters(values_of(command.name))
-        later = f"; from the next reset on: {', '.join(waiting)}" if waiting else ""
-        engine.run.event_log.note("office", f"preset {command.name}{later}")
-
-    return attempt("name", command.name, use)
+    waiting = engine.run.session.set_parameters(values_of(command.name))
+    later = f"; from the next reset on: {', '.join(waiting)}" if waiting else ""
+    engine.run.event_log.note("office", f"preset {command.name}{later}")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from app.commands.outcome import Outcome, attempt
+from app.commands.outcome import Outcome
 from app.engine.engine import Engine
 from app.engine.lesson_run import LessonRun, Teaching
 from app.engine.waiting import RunUntil
@@ -14,30 +14,23 @@ NONE = "no lesson was begun in this run: begin one first"
 
 
 def begin_lesson(engine: Engine, command: m.BeginLesson) -> Outcome:
-    def go() -> None:
-        lesson = find_lesson(command.name)
-        seed = lesson.scene.seed if command.seed is None else command.seed
-        engine.begin_lesson(Teaching(lesson, seed, engine.next_config))
-
-    return attempt("name", command.name, go)
+    lesson = find_lesson(command.name)
+    seed = lesson.scene.seed if command.seed is None else command.seed
+    engine.begin_lesson(Teaching(lesson, seed, engine.next_config))
 
 
 def predict(engine: Engine, command: m.Predict) -> Outcome:
-    def go() -> None:
-        _open(engine).teaching.predict(m.LessonPrediction(command.choice, command.x, command.y))
-
-    return attempt("choice", command.choice, go) or m.Accepted(engine.shown.session.tick_count)
+    _open(engine).teaching.predict(m.LessonPrediction(command.choice, command.x, command.y))
+    return m.Accepted(engine.shown.session.tick_count)
 
 
 def vote(engine: Engine, command: m.Vote) -> Outcome:
-    def go() -> None:
-        lesson = _open(engine)
-        if lesson.teaching.lesson.name != command.lesson:
-            raise ValueError(f"the lesson is {lesson.teaching.lesson.name!r} now, not {command.lesson!r}")
-        prediction = m.LessonPrediction(command.choice, command.x, command.y)
-        lesson.teaching.vote(command.voter, prediction, command.sender)
-
-    return attempt("choice", command.choice, go) or m.Accepted(engine.shown.session.tick_count)
+    lesson = _open(engine)
+    if lesson.teaching.lesson.name != command.lesson:
+        raise ValueError(f"the lesson is {lesson.teaching.lesson.name!r} now, not {command.lesson!r}")
+    prediction = m.LessonPrediction(command.choice, command.x, command.y)
+    lesson.teaching.vote(command.voter, prediction, command.sender)
+    return m.Accepted(engine.shown.session.tick_count)
 
 
 def show_lesson(engine: Engine, command: m.ShowLesson) -> Outcome:
@@ -69,8 +62,8 @@ def lesson_again(engine: Engine, command: m.LessonAgain) -> Outcome:
     if lesson is None:
         return m.Refused("type", command.type, NONE)
     teaching = lesson.teaching
-    again = Teaching(teaching.lesson, teaching.seed, teaching.config_before)
-    return attempt("type", command.type, lambda: engine.begin_lesson(again))
+    engine.begin_lesson(Teaching(teaching.lesson, teaching.seed, teaching.config_before))
+    return None
 
 
 def end_lesson(engine: Engine, command: m.EndLesson) -> Outcome:
@@ -84,21 +77,18 @@ def end_lesson(engine: Engine, command: m.EndLesson) -> Outcome:
 def run_until(engine: Engine, command: m.RunUntil) -> Outcome:
     """From the present on."""
     where = command.place if command.x is None or command.y is None else (command.x, command.y)
-
-    def go() -> None:
-        if command.place is not None and isinstance(where, tuple):
-            raise ValueError("give either place or x and y")
-        until = read_until({"what": command.what, "count": command.count, "place": where})
-        engine.run.until = RunUntil(until, command.within_s, engine.run.session, engine.run.history)
-
     refused = engine.pause_for(command.type)
     if refused is not None:
         return refused
     engine.break_off()
     engine.time.back_to_now()
-    refused = attempt("what", command.what, go)
-    engine.running = refused is None
-    return refused
+    engine.running = False
+    if command.place is not None and isinstance(where, tuple):
+        raise ValueError("give either place or x and y")
+    until = read_until({"what": command.what, "count": command.count, "place": where})
+    engine.run.until = RunUntil(until, command.within_s, engine.run.session, engine.run.history)
+    engine.running = True
+    return None
 
 
 def _open(engine: Engine) -> LessonRun:

@@ -5,62 +5,51 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from app.commands.outcome import Outcome, attempt
+from app.commands.outcome import Outcome
 from app.engine.engine import Engine
 from sim2d import Box
 from web import messages as m
 
 
 def set_door(engine: Engine, command: m.SetDoor) -> Outcome:
-    session = engine.run.session
-    words = "opens" if command.open else "shuts"
-    return _done(engine, command.name, words, lambda: session.set_door(command.name, command.open))
+    engine.run.session.set_door(command.name, command.open)
+    engine.run.event_log.note("office", f"{command.name} {'opens' if command.open else 'shuts'}")
 
 
 def set_lamp(engine: Engine, command: m.SetLamp) -> Outcome:
-    session = engine.run.session
-    words = "on" if command.on else "off"
-    return _done(engine, command.name, words, lambda: session.set_lamp(command.name, command.on))
+    engine.run.session.set_lamp(command.name, command.on)
+    engine.run.event_log.note("office", f"{command.name} {'on' if command.on else 'off'}")
 
 
 def put_box(engine: Engine, command: m.PutBox) -> Outcome:
-    session, c = engine.run.session, command
-    box = Box(c.name, c.x, c.y, c.width, c.depth, c.height, c.angle_rad)
-    return _done(engine, command.name, "put down", lambda: session.put_box(box))
+    c = command
+    engine.run.session.put_box(Box(c.name, c.x, c.y, c.width, c.depth, c.height, c.angle_rad))
+    engine.run.event_log.note("office", f"{c.name} put down")
 
 
 def remove_box(engine: Engine, command: m.RemoveBox) -> Outcome:
-    session = engine.run.session
-    return _done(engine, command.name, "taken away", lambda: session.remove_box(command.name))
-
-
-def _done(engine: Engine, name: str, words: str, order: Callable[[], None]) -> Outcome:
-    def do() -> None:
-        order()
-        engine.run.event_log.note("office", f"{name} {words}")
-
-    return attempt("name", name, do)
+    engine.run.session.remove_box(command.name)
+    engine.run.event_log.note("office", f"{command.name} taken away")
 
 
 def edit_world(engine: Engine, command: m.EditWorld) -> Outcome:
     session = engine.run.session
     radius, free_in = session.simulator.params.robot_radius_m, session.simulator.free_in
-    steps = [step.model_dump(exclude_none=True) for step in command.steps]
-    return _edited(engine, "steps", steps, lambda: engine.editor.edit(command, radius, session.edit_world, free_in))
+    _edited(engine, lambda: engine.editor.edit(command, radius, session.edit_world, free_in))
 
 
-def undo_edit(engine: Engine, command: m.UndoEdit) -> Outcome:
-    return _edited(engine, "type", command.type, lambda: engine.editor.undo(engine.run.session.edit_world))
+def undo_edit(engine: Engine, _: m.UndoEdit) -> Outcome:
+    _edited(engine, lambda: engine.editor.undo(engine.run.session.edit_world))
 
 
-def redo_edit(engine: Engine, command: m.RedoEdit) -> Outcome:
-    return _edited(engine, "type", command.type, lambda: engine.editor.redo(engine.run.session.edit_world))
+def redo_edit(engine: Engine, _: m.RedoEdit) -> Outcome:
+    _edited(engine, lambda: engine.editor.redo(engine.run.session.edit_world))
 
 
-def _edited(engine: Engine, field: str, value: object, edit: Callable[[], str]) -> Outcome:
+def _edited(engine: Engine, edit: Callable[[], str]) -> None:
     """edit: makes the edit and returns what was done, in words, for the event log."""
     engine.editor.follow(engine.run.session.simulator.world)
-    return attempt(field, value, lambda: engine.run.event_log.note("office", edit()))
+    engine.run.event_log.note("office", edit())
 
 
 def read_world(engine: Engine, _: m.ReadWorld) -> Outcome:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 from web.messages import Accepted, Refused
@@ -21,12 +20,3 @@ class Working:
 
 
 Outcome = Accepted | Refused | Later | Working | None  # None: accepted, with no result to return
-
-
-def attempt(field: str, value: object, order: Callable[[], object]) -> Refused | None:
-    """Call `order`. If it raises ValueError, return a refusal with this field, its value and the reason."""
-    try:
-        order()
-    except ValueError as error:
-        return Refused(field, value, str(error))
-    return None

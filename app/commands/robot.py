@@ -3,7 +3,7 @@ in it."""
 
 from __future__ import annotations
 
-from app.commands.outcome import Outcome, attempt
+from app.commands.outcome import Outcome
 from app.engine.engine import Engine
 from app.session_snapshot import take_session
 from app.views import inspection
@@ -11,31 +11,22 @@ from web import messages as m
 
 
 def set_goal(engine: Engine, command: m.SetGoal) -> Outcome:
-    def go() -> None:
-        experience = engine.run.session.set_goal(command.x, command.y)
-        engine.run.event_log.note("goal", f"to experience {experience}")
-
-    return attempt("x, y", (command.x, command.y), go)
+    experience = engine.run.session.set_goal(command.x, command.y)
+    engine.run.event_log.note("goal", f"to experience {experience}")
 
 
 def tag(engine: Engine, command: m.Tag) -> Outcome:
-    def name() -> None:
-        experience = engine.run.session.tag(command.name)
-        engine.run.event_log.note("place", f"{command.name.strip()} is here, at experience {experience}")
-
-    return attempt("name", command.name, name)
+    experience = engine.run.session.tag(command.name)
+    engine.run.event_log.note("place", f"{command.name.strip()} is here, at experience {experience}")
 
 
 def untag(engine: Engine, command: m.Untag) -> Outcome:
-    return attempt("name", command.name, lambda: engine.run.session.untag(command.name))
+    engine.run.session.untag(command.name)
 
 
 def go_to_tag(engine: Engine, command: m.GoToTag) -> Outcome:
-    def go() -> None:
-        experience = engine.run.session.go_to_tag(command.name)
-        engine.run.event_log.note("goal", f"to {command.name}, experience {experience}")
-
-    return attempt("name", command.name, go)
+    experience = engine.run.session.go_to_tag(command.name)
+    engine.run.event_log.note("goal", f"to {command.name}, experience {experience}")
 
 
 def cancel_goal(engine: Engine, _: m.CancelGoal) -> Outcome:
@@ -43,7 +34,7 @@ def cancel_goal(engine: Engine, _: m.CancelGoal) -> Outcome:
 
 
 def set_mode(engine: Engine, command: m.SetMode) -> Outcome:
-    return attempt("mode", command.mode, lambda: engine.run.session.set_mode(command.mode))
+    engine.run.session.set_mode(command.mode)
 
 
 def drive(engine: Engine, command: m.Drive) -> Outcome:
@@ -52,23 +43,20 @@ def drive(engine: Engine, command: m.Drive) -> Outcome:
 
 
 def kidnap(engine: Engine, command: m.Kidnap) -> Outcome:
-    def carry() -> None:
-        engine.run.session.kidnap(command.x, command.y, command.heading_rad)
-        engine.run.event_log.note("kidnap", "carried away without being told")
-
-    return attempt("x, y", (command.x, command.y), carry)
+    engine.run.session.kidnap(command.x, command.y, command.heading_rad)
+    engine.run.event_log.note("kidnap", "carried away without being told")
 
 
 def inspect(engine: Engine, command: m.Inspect) -> Outcome:
     """Show this on every page from now on."""
     run = engine.shown
-    chosen = command.model_dump(exclude={"type"}, exclude_none=True)
-
-    def choose() -> None:
+    try:
         inspection.inspect(run.session, run.visits, run.history.events.reasons, command)
-        run.snapshots.inspected = command
-
-    return attempt(", ".join(chosen) or "type", list(chosen.values()), choose)
+    except ValueError as error:
+        chosen = command.model_dump(exclude={"type"}, exclude_none=True)
+        return m.Refused(", ".join(chosen) or "type", list(chosen.values()), str(error))
+    run.snapshots.inspected = command
+    return None
 
 
 def read_experience(engine: Engine, request: m.ReadExperience) -> Outcome:

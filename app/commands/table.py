@@ -118,9 +118,14 @@ def _hindrance(engine: Engine, command: object) -> str:
 
 
 def _commanded(engine: Engine, handler: Handler, command: CommandModel) -> Outcome:
-    """Call the handler, then rebuild what the snapshot shows and log every new warning of the config."""
+    """Call the handler, then rebuild what the snapshot shows and log every new warning of the config. What it raises as
+    ValueError is a refusal."""
     run, before = engine.run, engine.run.session.warnings
-    outcome = handler(engine, command)
+    try:
+        outcome = handler(engine, command)
+    except ValueError as error:
+        values = tuple(command.model_dump(exclude_none=True).get(name) for name in command.at.split(", "))
+        outcome = m.Refused(command.at, values[0] if len(values) == 1 else values, str(error))
     if outcome is None:
         engine.shown.snapshots.refresh()
         after_order(engine, command)

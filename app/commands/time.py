@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Generator
 from pathlib import Path
 
-from app.commands.outcome import Outcome, Working, attempt
+from app.commands.outcome import Outcome, Working
 from app.engine.engine import Engine
 from app.engine.run import Run
 from app.engine.work import Work
@@ -35,17 +35,7 @@ def seek(engine: Engine, command: m.Seek) -> Outcome:
 
     work = Work("going there", steps(), moves=True)
     work.plays = playing
-    return _worked(engine, "tick", command.tick, work)
-
-
-def _worked(engine: Engine, field: str, value: object, work: Work) -> Outcome:
-    done = False
-
-    def begin() -> None:
-        nonlocal done
-        done = engine.work(work)
-
-    return attempt(field, value, begin) or (None if done else Working())
+    return None if engine.work(work) else Working()
 
 
 def back_to_now(engine: Engine, _: m.BackToNow) -> Outcome:
@@ -58,31 +48,26 @@ def back_to_now(engine: Engine, _: m.BackToNow) -> Outcome:
 
 
 def go_on_from_here(engine: Engine, _: m.GoOnFromHere) -> Outcome:
-    return attempt("type", "go_on_from_here", engine.go_on_from_here)
+    engine.go_on_from_here()
 
 
 def go_on_without(engine: Engine, command: m.GoOnWithout) -> Outcome:
     """[ours] What would have come of it without the views that led to an event. test_go_on_without.py."""
-
-    def go() -> None:
-        report = engine.run.history.events.reasons.of(command.event)
-        if not report.without:
-            raise ValueError(f"no view led to event {command.event}: there is nothing to go on without")
-        engine.time.seek(max(0, engine.time.tick_at(report.since_s) - 1))
-        run = engine.go_on_from_here()
-        known = [view for view in report.without if view < len(run.session.brain.local_view)]
-        for view in known:
-            run.session.forget_view(view)
-        names = ", ".join(map(str, known))
-        run.event_log.note("branch", f"the brain has forgotten where it saw view {names}")
-
     engine.running = False
     engine.break_off()
-    return attempt("event", command.event, go)
+    report = engine.run.history.events.reasons.of(command.event)
+    if not report.without:
+        raise ValueError(f"no view led to event {command.event}: there is nothing to go on without")
+    engine.time.seek(max(0, engine.time.tick_at(report.since_s) - 1))
+    run = engine.go_on_from_here()
+    known = [view for view in report.without if view < len(run.session.brain.local_view)]
+    for view in known:
+        run.session.forget_view(view)
+    run.event_log.note("branch", f"the brain has forgotten where it saw view {', '.join(map(str, known))}")
 
 
 def change_branch(engine: Engine, command: m.ChangeBranch) -> Outcome:
-    return attempt("number", command.number, lambda: engine.change_branch(command.number))
+    engine.change_branch(command.number)
 
 
 def compare_branch(engine: Engine, command: m.CompareBranch) -> Outcome:
@@ -91,7 +76,7 @@ def compare_branch(engine: Engine, command: m.CompareBranch) -> Outcome:
         engine.time.stop_comparing()
         return None
     work = Work("comparing the branches", engine.time.comparing(command.number), moves=False)
-    return _worked(engine, "number", command.number, work)
+    return None if engine.work(work) else Working()
 
 
 def loop(engine: Engine, command: m.Loop) -> Outcome:
@@ -110,24 +95,18 @@ def loop(engine: Engine, command: m.Loop) -> Outcome:
 def put_bookmark(engine: Engine, command: m.PutBookmark) -> Outcome:
     """Of the moment that is shown, or another name for that of a tick."""
 
-    def put() -> None:
-        run, shown = engine.run, engine.shown.session
-        tick, time_s = shown.tick_count, shown.time_s
-        if command.tick is not None:
-            before = run.bookmarks.at(command.tick)
-            tick, time_s = before.tick, before.time_s
-        run.bookmarks.put(tick, time_s, command.name)
-        run.keep_bookmarks()
-
-    return attempt("name", command.name, put)
+    run, shown = engine.run, engine.shown.session
+    tick, time_s = shown.tick_count, shown.time_s
+    if command.tick is not None:
+        before = run.bookmarks.at(command.tick)
+        tick, time_s = before.tick, before.time_s
+    run.bookmarks.put(tick, time_s, command.name)
+    run.keep_bookmarks()
 
 
 def remove_bookmark(engine: Engine, command: m.RemoveBookmark) -> Outcome:
-    def remove() -> None:
-        engine.run.bookmarks.remove(command.tick)
-        engine.run.keep_bookmarks()
-
-    return attempt("tick", command.tick, remove)
+    engine.run.bookmarks.remove(command.tick)
+    engine.run.keep_bookmarks()
 
 
 def read_situation(engine: Engine, _: m.ReadSituation) -> Outcome:

@@ -1,7 +1,7 @@
 """The commands that people give the engine: pydantic models, strict and closed. Names and docstrings are the HTTP API's.
 
-A new command is its model here, in the union at the end; its handler in the file of app/commands that its noun belongs to,
-with a row in table.py there; and what gives it on the page.
+A new command is its model here, in the union at the end; its handler in the file of app/commands that its noun belongs to
+(what it raises as ValueError is a refusal), with a row in table.py there; and what gives it on the page.
 """
 
 from __future__ import annotations
@@ -31,6 +31,7 @@ class CommandModel(BaseModel):
     while_playing: may be given while a situation is played up to its moment.
     ends: why a trial that is watched ends by it, in words: the robot can have one master only.
     alters: by it, that trial is another run from there on.
+    at: the field, or fields, that are wrong when it is refused.
     """
 
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False)
@@ -39,20 +40,21 @@ class CommandModel(BaseModel):
     while_playing: ClassVar[bool]
     ends: ClassVar[str]
     alters: ClassVar[bool]
+    at: ClassVar[str]
 
     def __init_subclass__(
         cls, *, needs: Needs | None = None, in_the_past: bool = False, while_playing: bool = False, ends: str = "",
-        alters: bool = False, **config: Unpack[ConfigDict],
+        alters: bool = False, at: str = "type", **config: Unpack[ConfigDict],
     ) -> None:  # fmt: skip
         super().__init_subclass__(**config)
         cls.needs, cls.in_the_past, cls.while_playing = needs, in_the_past, while_playing
-        cls.ends, cls.alters = ends, alters
+        cls.ends, cls.alters, cls.at = ends, alters, at
 
 
 _Size = Annotated[float, Field(ge=0.05, le=20.0)]
 
 
-class SetDoor(CommandModel, needs="office", alters=True):
+class SetDoor(CommandModel, needs="office", alters=True, at="name"):
     """Open or shut a door of the office. It moves from the next tick on, and waits for anyone who stands in it."""
 
     type: Literal["set_door"]
@@ -60,13 +62,13 @@ class SetDoor(CommandModel, needs="office", alters=True):
     open: bool
 
 
-class SetLamp(CommandModel, needs="office", alters=True):
+class SetLamp(CommandModel, needs="office", alters=True, at="name"):
     type: Literal["set_lamp"]
     name: Name
     on: bool
 
 
-class PutBox(CommandModel, needs="office", alters=True):
+class PutBox(CommandModel, needs="office", alters=True, at="name"):
     """Put a box down (office frame, metres). Refused where it would cover the robot. A reset removes it."""
 
     type: Literal["put_box"]
@@ -79,12 +81,12 @@ class PutBox(CommandModel, needs="office", alters=True):
     angle_rad: Finite = 0.0
 
 
-class RemoveBox(CommandModel, needs="office", alters=True):
+class RemoveBox(CommandModel, needs="office", alters=True, at="name"):
     type: Literal["remove_box"]
     name: Name
 
 
-class UsePreset(CommandModel, alters=True):
+class UsePreset(CommandModel, alters=True, at="name"):
     """Set the robot's sensors and encoders to a preset: "Pioneer 2DXE 2004" or "ideal"."""
 
     type: Literal["use_preset"]
@@ -108,7 +110,7 @@ class EditStep(CommandModel):
     item: dict[str, Any] | None = None  # the new item; a wall without a colour gets looks of its own
 
 
-class EditWorld(CommandModel, needs="office", alters=True):
+class EditWorld(CommandModel, needs="office", alters=True, at="steps"):
     """Change the office under the running robot: all steps or none. Refused when the world would not be valid, when the
     robot would be covered, or when the office is no longer the edition that the editor saw. Undone as one."""
 
@@ -136,7 +138,7 @@ EditOrder = EditWorld | UndoEdit | RedoEdit
 _Moment = Annotated[float, Field(ge=0, le=1e9)]
 
 
-class Seek(CommandModel, in_the_past=True):
+class Seek(CommandModel, in_the_past=True, at="tick"):
     """Pause and show a moment of the run, by simulated time or by tick. From the last one on: the present. Changes nothing."""
 
     type: Literal["seek"]
@@ -156,7 +158,7 @@ class GoOnFromHere(CommandModel, in_the_past=True):
     type: Literal["go_on_from_here"]
 
 
-class GoOnWithout(CommandModel, in_the_past=True):
+class GoOnWithout(CommandModel, in_the_past=True, at="event"):
     """Go back to before what led to this event, and go on in another branch in which the brain has forgotten the views that
     led to it."""
 
@@ -164,14 +166,14 @@ class GoOnWithout(CommandModel, in_the_past=True):
     event: Annotated[int, Field(ge=1)]
 
 
-class ChangeBranch(CommandModel, in_the_past=True):
+class ChangeBranch(CommandModel, in_the_past=True, at="number"):
     """Go on with another branch, from its end."""
 
     type: Literal["change_branch"]
     number: Annotated[int, Field(ge=1, le=1000)]
 
 
-class CompareBranch(CommandModel, in_the_past=True):
+class CompareBranch(CommandModel, in_the_past=True, at="number"):
     """Show another branch beside the live one, at the same time, and say where they differ first. Without a number: none."""
 
     type: Literal["compare_branch"]
@@ -186,7 +188,7 @@ class Loop(CommandModel, in_the_past=True):
     end_s: _Moment | None = None
 
 
-class PutBookmark(CommandModel, in_the_past=True):
+class PutBookmark(CommandModel, in_the_past=True, at="name"):
     """Name the moment that is shown, to come back to it; with a tick: give the bookmark there another name."""
 
     type: Literal["put_bookmark"]
@@ -194,7 +196,7 @@ class PutBookmark(CommandModel, in_the_past=True):
     tick: Annotated[int, Field(ge=0, le=10**9)] | None = None
 
 
-class RemoveBookmark(CommandModel, in_the_past=True):
+class RemoveBookmark(CommandModel, in_the_past=True, at="tick"):
     type: Literal["remove_bookmark"]
     tick: Annotated[int, Field(ge=0, le=10**9)]
 
@@ -219,7 +221,7 @@ TimeOrder = (
 )
 
 
-class BeginLesson(CommandModel, in_the_past=True):
+class BeginLesson(CommandModel, in_the_past=True, at="name"):
     """Begin a lesson, by its name in /api/lessons, in a run of its own. seed: another than the lesson's."""
 
     type: Literal["begin_lesson"]
@@ -227,7 +229,7 @@ class BeginLesson(CommandModel, in_the_past=True):
     seed: Annotated[int, Field(ge=0, lt=2**31)] | None = None
 
 
-class Predict(CommandModel, in_the_past=True):
+class Predict(CommandModel, in_the_past=True, at="choice"):
     """The prediction that is compared with what happens: an option by its number, from 0, or a point (m) on the plate on
     which the lesson asks for one. It can be changed until it is shown."""
 
@@ -237,7 +239,7 @@ class Predict(CommandModel, in_the_past=True):
     y: Finite | None = None
 
 
-class Vote(CommandModel, in_the_past=True):
+class Vote(CommandModel, in_the_past=True, at="choice"):
     """As `predict`, by one of a class: voter is a text that each page makes up for itself, and each voter counts once.
     sender: the address it comes from, which the server tells."""
 
@@ -268,7 +270,7 @@ class EndLesson(CommandModel, in_the_past=True):
     type: Literal["end_lesson"]
 
 
-class RunUntil(CommandModel, needs="robot", in_the_past=True):
+class RunUntil(CommandModel, needs="robot", in_the_past=True, at="what"):
     """Run as fast as possible until this happens, and pause exactly then; or until `within_s` simulated seconds have passed.
 
     count: of packets; place: a place of the office by name, or x and y (m, office frame), which the robot comes near.
@@ -286,7 +288,7 @@ class RunUntil(CommandModel, needs="robot", in_the_past=True):
 LessonOrder = BeginLesson | Predict | Vote | ShowLesson | LessonAgain | EndLesson | RunUntil
 
 
-class SetGoal(CommandModel, needs="robot", ends="somebody gave the robot a goal"):
+class SetGoal(CommandModel, needs="robot", ends="somebody gave the robot a goal", at="x, y"):
     """Go to this place of the map (metres, map frame): to the quickest of all experiences that stand for it."""
 
     type: Literal["set_goal"]
@@ -298,26 +300,26 @@ class CancelGoal(CommandModel, needs="robot", ends="somebody cancelled the robot
     type: Literal["cancel_goal"]
 
 
-class Tag(CommandModel):
+class Tag(CommandModel, at="name"):
     """Name the place where the robot believes itself to be, to send it there later. A name that is given again moves."""
 
     type: Literal["tag"]
     name: Name
 
 
-class Untag(CommandModel):
+class Untag(CommandModel, at="name"):
     type: Literal["untag"]
     name: Name
 
 
-class GoToTag(CommandModel, needs="robot", ends="somebody gave the robot a goal"):
+class GoToTag(CommandModel, needs="robot", ends="somebody gave the robot a goal", at="name"):
     """Go to the place that was given this name."""
 
     type: Literal["go_to_tag"]
     name: Name
 
 
-class SetMode(CommandModel, needs="robot", ends="somebody told the robot what to do"):
+class SetMode(CommandModel, needs="robot", ends="somebody told the robot what to do", at="mode"):
     type: Literal["set_mode"]
     mode: Literal["explore", "manual", "goal"]
 
@@ -330,7 +332,7 @@ class Drive(CommandModel, needs="robot", ends="somebody drove the robot by hand"
     yaw_rate: Annotated[float, Field(ge=-1.6, le=1.6)]
 
 
-class Kidnap(CommandModel, needs="robot", ends="somebody carried the robot away"):
+class Kidnap(CommandModel, needs="robot", ends="somebody carried the robot away", at="x, y"):
     """Put the robot elsewhere (office frame) without telling it. Without a place, a random free one is taken."""
 
     type: Literal["kidnap"]
@@ -398,7 +400,7 @@ class StepStage(CommandModel, in_the_past=True):
     back: bool = False
 
 
-class InjectPacket(CommandModel, alters=True):
+class InjectPacket(CommandModel, alters=True, at="x, y"):
     """Add a packet of activity at a place in the pose cells (cells, radians), to watch it compete. No sensor supports it.
 
     share: of all activity afterwards.
@@ -443,7 +445,7 @@ class WatchExperiment(CommandModel, in_the_past=True, while_playing=True):
     moment_s: Annotated[float, Field(ge=0, le=1e7)] | None = None
 
 
-class CompareBrains(CommandModel):
+class CompareBrains(CommandModel, at="since"):
     """Give a second brain the same senses, and show both. It differs from the first in the parameters of a named pair, or in
     `values`, and changes nothing in the first.
 

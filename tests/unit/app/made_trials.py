@@ -111,7 +111,8 @@ def trace(stored: StoredTrial, of: Experiment) -> Trace:
         moments=(Moment(20.0, "kidnapped"), Moment(33.0, "recovered 13.0 s and 4.0 m after the kidnap", True),
                  Moment(59.5, "the end")),
         goals=(Goal("kitchen", 7.0, 4.0, 3), Goal("printer", 1.0, 7.0, None)),
-        visits=(Visited("kitchen", 3, True, 40.0, 10.0, 3.0, 2.5, 0.1, ""), Visited("printer", 5, False, 50.0, 9.0, 1.0, 4.0, 5.0, "no")),
+        visits=(Visited("kitchen", 3, True, 40.0, 10.0, 3.0, 2.5, 0.1, ""),
+                Visited("printer", 5, False, 50.0, 9.0, 1.0, 4.0, 5.0, "no")),
         kidnaps=(Carried(20.0, 13.0, 4.0),), movements=movements(),
     )  # fmt: skip
 
