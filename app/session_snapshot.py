@@ -7,13 +7,14 @@ one that the robot is in, where boxes may have been put down. The rest must keep
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import IO, cast
 
 import numpy as np
 
 from app import session_laws
-from app.order_book import SMALLEST_M
+from app.orders import SMALLEST_M
 from app.session import Session
 from disk import State, copy_state, decode, encode
 from disk.archive import BROKEN
@@ -49,9 +50,10 @@ def save_session(session: Session, path: Path | str) -> None:
     save_state(take_session(session), path)
 
 
-def load_session(path: Path | str) -> Session:
-    """The session that `save_session` wrote. ValueError names the file and what is wrong with it."""
-    return load_as("session", path, _settled)
+def load_session(path: Path | str, begun: Session | None = None) -> Session:
+    """The session that `save_session` wrote. begun: of a recording: another one that plays it. Of its session no laws are
+    checked. ValueError names the file and what is wrong with it."""
+    return load_as("session", path, partial(_settled, begun=begun))
 
 
 def read_session(file: IO[bytes]) -> Session:
@@ -63,13 +65,16 @@ def _state_of(world_texts: tuple[str, str], copy: Session) -> State:
     return encode((*(np.frombuffer(text.encode(), np.uint8) for text in world_texts), copy))
 
 
-def _settled(state: State) -> Session:
+def _settled(state: State, begun: Session | None = None) -> Session:
     parts = decode(state)
     if not isinstance(parts, tuple) or len(cast("tuple[object, ...]", parts)) != 3:
         raise ValueError("it must hold two worlds and a session")
     first_text, text, session = cast("tuple[object, object, object]", parts)
     if not isinstance(session, Session):
         raise ValueError(f"it must hold a session, got a {type(session).__name__}")
+    if begun is not None:
+        session.settle((), begun)
+        return session
     first = _world_of(first_text, "the text of its first world")
     now = _world_of(text, "the text of its world", begins=False)
     if first == now:

@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING
 
 from app.cli.options import checked_seed, config_of, session_of
 from app.config import Config
-from app.order_book import SMALLEST_M
-from app.situations import Situation, read_situation
-from app.situations.document import KEY
+from app.orders import SMALLEST_M
+from app.run_record.link import KEY, read_situation
+from app.run_record.situation import Situation
 from disk.limits import SITUATION_BYTES
 from ratslam_core import RatSlam
 from sim2d import DEFAULT_WORLD, World, own_worlds, world_from_json
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from app.engine.engine import Engine
     from app.kept_brains import KeptBrain
     from app.protocol.trial import Trial
-    from app.runs.run_file import KeptRun
+    from app.run_record.reader import KeptRun
     from web import messages as m
 
 _NOT_WITH_RECORDING = ("scale", "brain", "resume_brain", "experiment", "engine", "levels")
@@ -80,15 +80,15 @@ def _kept_brain(args: argparse.Namespace) -> KeptBrain | None:
 
 def cut_off_run() -> KeptRun | None:
     """The newest run, if it was cut off in the middle, by a crash or a kill."""
-    from app.runs.folder import all_runs, is_open
-    from app.runs.run_file import open_run
+    from app.run_record.folder import all_runs, is_open
+    from app.run_record.reader import open_run
 
     for folder in all_runs()[:1]:
         try:
             run = open_run(folder)
         except ValueError:
             return None
-        if run.last_tick > 0 and not run.end and not is_open(folder):
+        if run.tick > 0 and not run.end and not is_open(folder):
             print(f"The run {run.name} was cut off: go on with it by `ratslam run --resume {run.name}`", flush=True)
             return run
     return None
@@ -96,7 +96,7 @@ def cut_off_run() -> KeptRun | None:
 
 def going_on(kept: KeptRun, tell: Callable[[float], object]) -> m.GoOn:
     """The run in the session where it was left. tell: is given the share that is done, and may raise to give it up."""
-    from app.runs.replay import resumed
+    from app.run_record.resume import resumed
     from web import messages as m
 
     done_s = 0.0
@@ -112,9 +112,9 @@ def going_on(kept: KeptRun, tell: Callable[[float], object]) -> m.GoOn:
 def resumed_run(args: argparse.Namespace) -> First:
     """Go on with a run where it was left; what led there is run again first."""
     from app.cli.progress import compile_first, with_progress
-    from app.runs.folder import busy_words, is_open
-    from app.runs.replay import resumed
-    from app.runs.run_file import open_run
+    from app.run_record.folder import busy_words, is_open
+    from app.run_record.reader import open_run
+    from app.run_record.resume import resumed
 
     _refuse(args, _NOT_WITH_A_RUN, "--resume: the run has its own")
     kept = open_run(args.resume)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from app.cli.options import ENGINES, Verbs, add_session_options, port_number
 from app.cli.serving import PAST_DISK_MB, PAST_MB, Serving, serve
-from app.runs.folder import BUDGET_MB
+from app.run_record.folder import BUDGET_MB
 
 if TYPE_CHECKING:
     from app.cli.beginnings import First

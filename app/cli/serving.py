@@ -12,12 +12,12 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.runs.folder import BUDGET_MB, runs_folder
+from app.run_record.folder import BUDGET_MB, runs_folder
 
 if TYPE_CHECKING:
     from app.cli.beginnings import First
+    from app.run_record.keyframes import PastRoom
     from app.startup.compiling import Compiling
-    from app.time_machine import PastRoom
     from web.http.class_door import Classroom
     from web.http.server import Dashboard, ForClass
 
@@ -51,7 +51,7 @@ def serve(serving: Serving, first: First) -> int:
 
 
 def _past_room(serving: Serving) -> PastRoom:
-    from app.time_machine import PastRoom
+    from app.run_record.keyframes import PastRoom
 
     try:
         folder = runs_folder()
@@ -67,8 +67,8 @@ def _serve(serving: Serving, first: First, compiling: Compiling) -> int:
     from app.gallery.gallery import StoredGallery
     from app.gallery.lessons import StoredLessons
     from app.kept_brains import BrainKeeper
-    from app.runs.keeper import RunKeeper
-    from app.situations.page import PageSituations
+    from app.run_record.link import PageSituations
+    from app.run_record.writer import RunKeeper
     from app.startup.waking import Waking
     from ratslam_core import load_brain
     from web import messages as m

@@ -3,18 +3,18 @@ moment that is shown, or to another that is opened."""
 
 from __future__ import annotations
 
-from collections.abc import Generator
+from collections.abc import Generator, Sequence
 from pathlib import Path
 
 from app.commands.outcome import Outcome, Working, attempt
 from app.engine.engine import Engine
 from app.engine.run import Run
 from app.engine.work import Work
-from app.order_book import Order
-from app.runs.folder import BRAIN
-from app.runs.header import Beginning
-from app.runs.run_file import KeptRun
-from app.situations import LedHere, Situation
+from app.orders import Order
+from app.run_record.folder import BRAIN
+from app.run_record.header import Beginning
+from app.run_record.reader import KeptRun
+from app.run_record.situation import ReplaySpec, Situation
 from ratslam_core import RatSlam
 from web import messages as m
 
@@ -131,9 +131,11 @@ def remove_bookmark(engine: Engine, command: m.RemoveBookmark) -> Outcome:
 
 
 def read_situation(engine: Engine, _: m.ReadSituation) -> Outcome:
-    first, orders = engine.time.led_here()
+    first, orders = engine.time.origin()
     began, brain, earlier = _beginning_of(first)
-    return m.Accepted(engine.shown.session.tick_count, LedHere(began, brain, [*earlier, *orders], engine.shown.session))
+    return m.Accepted(
+        engine.shown.session.tick_count, ReplaySpec(began, brain, [*earlier, *orders], engine.shown.session)
+    )
 
 
 def open_situation(engine: Engine, request: m.OpenSituation) -> Outcome:
@@ -153,7 +155,7 @@ def leave_situation(engine: Engine, _: m.LeaveSituation) -> Outcome:
     return None
 
 
-def _beginning_of(run: Run) -> tuple[Beginning, RatSlam | Path | None, list[Order]]:
+def _beginning_of(run: Run) -> tuple[Beginning, RatSlam | Path | None, Sequence[Order]]:
     """What a run began from, the brain that it began with, and the orders of the kept run that it goes on with."""
     began = run.beginning
     assert began is not None  # a recording is refused before

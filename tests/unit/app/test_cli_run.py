@@ -20,8 +20,8 @@ from app.cli.serving import Serving
 from app.config import Config
 from app.engine.engine import Engine
 from app.protocol.experiment import find_experiment
-from app.runs.folder import runs_folder
-from app.time_machine import PastRoom
+from app.run_record.folder import runs_folder
+from app.run_record.keyframes import PastRoom
 from sim2d import World
 from tests.patience import PATIENCE_S
 from web.http import server
