@@ -16,6 +16,7 @@ from app.config import Config
 from app.orders import SMALLEST_M
 from app.run_record.link import KEY, read_situation
 from app.run_record.situation import Situation
+from disk import kept_folder
 from disk.limits import SITUATION_BYTES
 from ratslam_core import RatSlam
 from sim2d import DEFAULT_WORLD, World, own_worlds, world_from_json
@@ -23,9 +24,9 @@ from sim2d.importers import open_world
 
 if TYPE_CHECKING:
     from app.engine.engine import Engine
-    from app.kept_brains import KeptBrain
     from app.protocol.trial import Trial
     from app.run_record.reader import KeptRun
+    from app.run_record.states import KeptBrain
     from web import messages as m
 
 _NOT_WITH_RECORDING = ("scale", "brain", "resume_brain", "experiment", "engine", "levels")
@@ -62,9 +63,10 @@ def new_run(args: argparse.Namespace) -> First:
 
 def _kept_brain(args: argparse.Namespace) -> KeptBrain | None:
     """The brain kept last: with --resume-brain set up to be run, without it returned, to be offered on the page."""
-    from app.kept_brains import folder, newest
+    from app.run_record.folder import runs_folder
+    from app.run_record.states import newest_brain
 
-    kept = newest()
+    kept = newest_brain()
     if not args.resume_brain:
         if kept is None or args.brain is not None:
             return None
@@ -73,9 +75,15 @@ def _kept_brain(args: argparse.Namespace) -> KeptBrain | None:
     if args.brain is not None:
         raise ValueError(f"--resume-brain takes the brain that was kept last; do not give --brain {args.brain} with it")
     if kept is None:
-        raise ValueError(f"--resume-brain: no brain is kept in {folder()}")
+        raise ValueError(f"--resume-brain: no brain is kept in {runs_folder()}{_of_before()}")
     args.brain, args.world, args.seed = kept.path, kept.about.world, kept.about.seed
     return None
+
+
+def _of_before() -> str:
+    """Earlier programs kept brains in a folder of their own."""
+    folder = kept_folder() / "brains"
+    return f"; those of an earlier version are in {folder}: --brain FILE takes one" if folder.exists() else ""
 
 
 def cut_off_run() -> KeptRun | None:

@@ -198,6 +198,12 @@ class Engine:
         self.run.stop_running_ahead()
         return None
 
+    def leave(self) -> None:
+        """The program ends: nothing runs the session any more."""
+        self.break_off()
+        if self._run is not None and self._run.feed is not None:
+            self._run.feed.leave(self._run.session)
+
     def fail(self, error: BaseException) -> None:
         """Stop at a fault. A fault that repeats is reported once."""
         words = words_of(error)

@@ -92,7 +92,7 @@ class EngineThread:
             finally:
                 self._inbox.give()
         self._watchdog.stop()
-        self._engine.break_off()
+        self._engine.leave()
         self._inbox.close("the engine has ended; start the program again")
 
     def _begin(self) -> bool:

@@ -16,7 +16,7 @@ LINES, BRAIN, STATE = "run.jsonl", "brain.npz", "state.npz"
 BUDGET_MB = 200.0
 MOST_RUNS = 200
 FRESH_S = 60.0  # where there are no locks, a run that goes on is touched far more often than that
-MOST_STATES = 3  # runs that keep a state to be resumed from fast; the others are resumed from their orders
+MOST_STATES = 3  # runs that keep a state, with its brain; the others are resumed from their orders
 
 
 def runs_folder() -> Path:
@@ -59,15 +59,18 @@ def delete(folder: Path) -> None:
 
 
 def tidy(budget_mb: float = BUDGET_MB, most: int = MOST_RUNS) -> None:
-    """Delete the oldest runs until the rest is within the budget. The newest, runs that go on and what cannot be deleted
-    stay."""
-    room, runs = budget_mb * 1e6, all_runs()
+    """Delete the oldest runs until the rest is within the budget. The newest, the newest with a state, runs that go on and what
+    cannot be deleted stay."""
+    room, runs, states = budget_mb * 1e6, all_runs(), 0
     for number, folder in enumerate(runs):
-        if number >= MOST_STATES and not is_open(folder):
+        has_state = (folder / STATE).exists()
+        states += has_state
+        if has_state and states > MOST_STATES and not is_open(folder):
             with contextlib.suppress(OSError):
                 (folder / STATE).unlink(missing_ok=True)
         room -= sum(_sizes(folder))
-        if number and (room < 0 or number >= most) and not is_open(folder):
+        stays = number == 0 or (has_state and states == 1)
+        if not stays and (room < 0 or number >= most) and not is_open(folder):
             with contextlib.suppress(OSError, ValueError):
                 delete(folder)
 

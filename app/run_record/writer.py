@@ -83,6 +83,7 @@ class RunFeed:
         self.told: deque[Told] = deque()
         self.hash_cost_s = 0.0  # of the last copy, as the thread that made it tells
         self._tell, self._open = tell, True
+        self._ordered_at = session.tick_count  # the tick of the last order
         self._copied_s, self._cost_s, self._at = session.time_s, 0.0, time.monotonic()
 
     def tick(self, session: Session) -> None:
@@ -92,14 +93,20 @@ class RunFeed:
         self.told.append((session.tick_count, tick_checksum(session)))
         if session.tick_count % LOOK_AFTER == 0 and self._is_due(session):
             began = time.thread_time()
-            self.told.append(Copy(session.tick_count, session.time_s, session.source.world_texts, copy_state(session)))
+            self.told.append(_copy(session, copy_state(session)))
             self._cost_s = time.thread_time() - began
             self._copied_s, self._at = session.time_s, time.monotonic()
 
     def order(self, order: Order) -> None:
         if self._open:
+            self._ordered_at = order.tick
             self.told.append(order)
             self._tell()
+
+    def leave(self, session: Session) -> None:
+        """Nobody runs the session any more. After an order that no tick has followed its state is none of the log."""
+        if self._open and self._ordered_at != session.tick_count:
+            self.told.append(_copy(session, session, last=True))
 
     def mark(self, rows: tuple[Bookmark, ...]) -> None:
         if self._open:
@@ -122,7 +129,13 @@ class RunFeed:
         return self._cost_s + self.hash_cost_s <= COPY_SHARE * (time.monotonic() - self._at)
 
 
-STATES_PATIENCE_S = 0.5  # a run is whole without its newest hash and state
+def _copy(session: Session, copy: Session, *, last: bool = False) -> Copy:
+    source = session.source
+    world = source.worlds[-1].name if source.worlds else ""
+    return Copy(session.tick_count, session.time_s, source.world_texts, copy, world, last)
+
+
+STATES_PATIENCE_S = 4.0  # a run is whole without its newest hash and state
 _numbers = count(1)
 
 
@@ -155,7 +168,8 @@ class LogWriter:
         self.write()
         if self._file is None:
             return
-        self._states.finish(STATES_PATIENCE_S)
+        if not self._states.finish(STATES_PATIENCE_S):
+            self._complain("the brain cannot be written in time; the one kept last stays")
         self.write()
         if not self._given_up:  # what comes after an order that is missing cannot be run again
             self._try(self._log.end, self._end)
@@ -175,7 +189,7 @@ class LogWriter:
         if self._file.without_locks:
             self._complain(f"{self._folder.parent} has no file locks: the run is kept there, but do not go on with it in two "
                            "programs at once; RATSLAM_RUNS names another folder")  # fmt: skip
-        self._states = States(self._folder, self._hashed)
+        self._states = States(self._folder, self._hashed, self._complain)
         self._try(first_line)
 
     def _go_on(self, kept: KeptRun) -> Callable[[], object]:
@@ -207,7 +221,7 @@ class LogWriter:
             case Order():
                 self._log.order(told)
             case Copy():
-                self._states.take(told)
+                self._states.take(told, STATES_PATIENCE_S)
             case Hashed():
                 self._log.hash(told.tick, told.state_hash, told.experiences)
             case Marked():

@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 
-from app import engine_thread, kept_brains
+from app import engine_thread
 from app.cli import beginnings, serving
 from app.cli import command_line as cli
 from app.cli.run import run_with_trial
@@ -48,8 +48,6 @@ class Doubles:
         monkeypatch.setattr("app.startup.compiling.Compiling", partial(CompilingDouble, self))
         monkeypatch.setattr(engine_thread, "EngineThread", partial(EngineDouble, self))
         monkeypatch.setattr(server, "Dashboard", partial(DashboardDouble, self))
-        monkeypatch.setattr(kept_brains.BrainKeeper, "start", lambda _self: None)
-        monkeypatch.setattr(kept_brains.BrainKeeper, "stop", lambda _self: None)
         monkeypatch.setattr(viewer, "Viewers", lambda *_: "viewers")
         monkeypatch.setattr("webbrowser.open", lambda url: self.log.append(f"opens {url}"))
 

@@ -46,6 +46,21 @@ def keep_one(
     return open_run("last"), session.state_hash()
 
 
+def keep_ticks(session: Session, ticks: int, complain: Callable[[str], object] = print) -> KeptRun:
+    """The run of a session that has just begun, of so many ticks, as a program keeps it that then ends."""
+    keeper = RunKeeper(complain)
+    keeper.start()
+    feed = keeper.feed(session, beginning_of(session))
+    session.on_order = feed.order
+    keeper.begin(feed)
+    for _ in range(ticks):
+        session.tick()
+        feed.tick(session)
+    feed.leave(session)
+    keeper.stop()
+    return open_run("last")
+
+
 class Keeping:
     """An engine whose runs keep themselves."""
 

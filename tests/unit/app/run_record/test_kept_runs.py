@@ -211,6 +211,17 @@ def test_the_oldest_runs_go_first_and_one_that_goes_on_stays(runs: Path) -> None
     file.close()
 
 
+def test_the_newest_state_stays_for_its_brain(runs: Path) -> None:
+    for number in range(4):
+        (runs / str(number)).mkdir(parents=True)
+        for name in (LINES, STATE) if number < 2 else (LINES,):
+            (runs / str(number) / name).write_bytes(b"x" * 1000)
+        os.utime(runs / str(number) / LINES, (1000 + number, 1000 + number))
+    tidy(0.001)
+    assert [folder.name for folder in all_runs()] == ["3", "1"]
+    assert (runs / "1" / STATE).exists()
+
+
 def test_boxes_and_edits_are_run_again(runs: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     start = LIVING.starts[0]
     box = Box("crate", start.x + 2, start.y, 0.3, 0.3, 0.4, 0.3)
