@@ -35,7 +35,6 @@ from app.run_record.run_log import line_of
 from app.run_record.states import newest_state
 from app.run_record.writer import RunFeed, RunKeeper
 from app.session import Session
-from ratslam_core import RatSlam
 from sim2d import load_world
 from web import messages as m
 
@@ -57,8 +56,8 @@ class ClockedKeeper(RunKeeper):
         super().__init__(lambda _words: None)
         self._moments = moments
 
-    def feed(self, session: Session, beginning: Beginning | KeptRun | object, brain: RatSlam | None = None) -> RunFeed:
-        feed = super().feed(session, beginning, brain)  # type: ignore[arg-type]
+    def feed(self, session: Session, beginning: Beginning | KeptRun | object) -> RunFeed:
+        feed = super().feed(session, beginning)  # type: ignore[arg-type]
         tick = feed.tick
 
         def clocked(session: Session) -> None:

@@ -254,7 +254,7 @@ class Engine:
         before = None if old is None or self.fault is not None else old.session  # after a fault it may be half changed
         kept = None if brain is None else copy_state(brain)  # the session will go on with the brain itself
         session = Session(world, seed, config, brain, before)
-        run = self._make_run(session, beginning_of(session, brain=brain is not None), kept)
+        run = self._make_run(session, beginning_of(session, brain=kept))
         if brain is not None:  # a foreign brain must be one that can be shown: try it before it is accepted
             run.require_showable()
         return self._change_to(run, world)
@@ -323,9 +323,7 @@ class Engine:
         brain = situation.first_brain()
         kept = None if brain is None else copy_state(brain)
         session = situation.begin(brain)
-        run = self._make_run(
-            session, beginning_of(session, brain=brain is not None, trial=situation.header.trial), kept
-        )
+        run = self._make_run(session, beginning_of(session, brain=kept, trial=situation.header.trial))
         run.require_showable()
         before = None if self._run is None or self.fault is not None else (self._run, self.time, self.editor.world)
         if session.world.name not in dict(self.library.titles):
@@ -375,16 +373,13 @@ class Engine:
         self.running = False
         return run
 
-    def _make_run(self, session: Session, beginning: Beginning | KeptRun | None, brain: RatSlam | None = None) -> Run:
+    def _make_run(self, session: Session, beginning: Beginning | KeptRun | None) -> Run:
         run = Run(self._next_number, session, self.library.titles)
-        run.feed = self._feed(session, beginning, brain)
-        run.beginning, run.first_brain = beginning, brain
+        run.feed, run.beginning = self._feed(session, beginning), beginning
         return run
 
-    def _feed(
-        self, session: Session, beginning: Beginning | KeptRun | Fork | None, brain: RatSlam | None = None
-    ) -> RunFeed | None:
-        return None if self._keeper is None or beginning is None else self._keeper.feed(session, beginning, brain)
+    def _feed(self, session: Session, beginning: Beginning | KeptRun | Fork | None) -> RunFeed | None:
+        return None if self._keeper is None or beginning is None else self._keeper.feed(session, beginning)
 
     @property
     def _next_number(self) -> int:

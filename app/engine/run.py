@@ -20,7 +20,6 @@ from app.views.event_log import EventLog
 from app.views.history import History, VisitLog
 from app.views.snapshots import Snapshots
 from app.views.tick_stages import TickRecorder
-from ratslam_core import RatSlam
 
 
 class Run:
@@ -37,7 +36,6 @@ class Run:
         self.beginning: Beginning | KeptRun | None = (
             None  # None: of a recording, and of a branch, which has its parent's
         )
-        self.first_brain: RatSlam | None = None  # a copy of the one that it began with
         self.lesson: LessonRun | None = None
         self.until: RunUntil | None = None  # what `run_until` waits for
         self.config_before: Config | None = None  # a trial's settings go with it

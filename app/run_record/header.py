@@ -21,6 +21,7 @@ from disk.words import one_line, plain
 if TYPE_CHECKING:
     from app.recordings.playing import Player
     from app.session import Session
+    from ratslam_core import RatSlam
 
 
 FORMAT = "ratslam run/1"
@@ -31,19 +32,20 @@ _RATE = "robot.sensor_rate_hz"
 
 @dataclass(frozen=True, slots=True)
 class Beginning:
-    """What a run began from. brain: whether it began with a brain, which lies beside the file; trial: of an experiment."""
+    """What a run began from. brain: a copy of the one that it began with, or its file; None: a new one. trial: of an
+    experiment."""
 
     world: str  # the text of its file
     world_name: str
     seed: int
     config: Config
-    brain: bool = False
+    brain: RatSlam | Path | None = None
     trial: str = ""
     recording: Path | None = None  # that is played; there is no world then
     dt: float | None = None  # s between two of its moments, in the mean
 
 
-def beginning_of(session: Session, *, brain: bool = False, trial: str = "") -> Beginning:
+def beginning_of(session: Session, *, brain: RatSlam | Path | None = None, trial: str = "") -> Beginning:
     """The beginning of a session that has not run yet."""
     return Beginning(session.source.world_texts[0], session.world.name, session.seed, session.config, brain, trial)
 
@@ -110,7 +112,7 @@ def header_of(beginning: Beginning) -> Header:
         FORMAT, code_version(), platform.python_version(), np.__version__, f"{platform.system()} {platform.machine()}",
         time.time(), beginning.world_name, beginning.world, beginning.seed,
         {name: value for name, _, value in beginning.config.items()},
-        beginning.brain, beginning.trial, recording,
+        beginning.brain is not None, beginning.trial, recording,
     )  # fmt: skip
 
 

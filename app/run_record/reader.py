@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 from app.orders import Order
 from app.run_record.folder import BRAIN, LINES, all_runs, runs_folder
-from app.run_record.header import read_header
+from app.run_record.header import Beginning, read_header
 from app.run_record.order_rows import OrderRows
 from app.run_record.record import CHECKSUM_BYTES, RunRecord
 from app.run_record.run_log import Lines
@@ -63,6 +63,11 @@ class KeptRun(RunRecord):
         from ratslam_core import load_brain
 
         return load_brain(self.folder / BRAIN) if self.header.brain else None
+
+    @property
+    def beginning(self) -> Beginning:
+        header, brain = self.header, self.folder / BRAIN if self.header.brain else None
+        return Beginning(header.world, header.world_name, header.seed, header.config, brain, header.trial)
 
     def checksum(self, tick: int) -> bytes:
         return bytes(self.checksums[CHECKSUM_BYTES * (tick - 1) : CHECKSUM_BYTES * tick])

@@ -53,11 +53,10 @@ class Situation(RunRecord):
 
 
 class ReplaySpec:
-    """What leads to a moment. brain: the one that the run began with, or its file. `situation` takes a while; it may be called
-    from another thread."""
+    """What leads to a moment. `situation` takes a while; it may be called from another thread."""
 
-    def __init__(self, began: Beginning, brain: RatSlam | Path | None, orders: list[Order], session: Session) -> None:
-        self._began, self._brain, self._orders = began, brain, orders
+    def __init__(self, began: Beginning, orders: list[Order], session: Session) -> None:
+        self._began, self._orders = began, orders
         self.tick, self.time_s, self.state_hash = session.tick_count, session.time_s, session.state_hash()
         self.second_hash = digest_of(session.companion)
         self.world, self.seed = session.world.name, session.seed
@@ -70,10 +69,11 @@ class ReplaySpec:
         )  # fmt: skip
 
     def _file(self) -> bytes | None:
-        if isinstance(self._brain, Path):
-            return self._brain.read_bytes()
-        if self._brain is None:
+        brain = self._began.brain
+        if isinstance(brain, Path):
+            return brain.read_bytes()
+        if brain is None:
             return None
         file = io.BytesIO()
-        write_state(encode(self._brain), file)
+        write_state(encode(brain), file)
         return file.getvalue()

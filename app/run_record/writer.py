@@ -16,7 +16,6 @@ from dataclasses import dataclass, replace
 from functools import partial
 from itertools import count
 from pathlib import Path
-from typing import TypeAlias
 
 from app.code_version import code_version
 from app.orders import Order
@@ -29,33 +28,11 @@ from app.run_record.run_log import LogFile, RunLog
 from app.run_record.states import Copy, States
 from app.session import Session
 from disk import copy_state, encode, whole_file, write_state
-from ratslam_core import RatSlam
 from web.messages import Bookmark
 
 COPY_EVERY_S = 10.0  # simulated time between two copies of the state, at least
 COPY_SHARE = 0.0025  # of the time may go into copies and their hashes; both grow dearer as the map grows
 LOOK_AFTER = 10  # ticks between two looks whether a copy is due
-
-
-@dataclass(frozen=True, slots=True)
-class Hashed:
-    """The `state_hash` after a tick, from the thread that makes hashes of copies."""
-
-    tick: int
-    state_hash: str
-    experiences: int
-
-
-@dataclass(frozen=True, slots=True)
-class Marked:
-    """All bookmarks of the run, as they are now."""
-
-    rows: tuple[Bookmark, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class Ended:
-    why: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,21 +43,17 @@ class Fork:
     tick: int | None = None
 
 
-Told: TypeAlias = "tuple[int, bytes] | Order | Copy | Hashed | Marked | Ended"  # a tick and its checksum
-
-
 class RunFeed:
     """What the engine tells of the run of one session. It waits in `told` for the keeper's thread."""
 
     def __init__(
-        self, session: Session, beginning: Beginning | KeptRun | Fork, brain: RatSlam | None = None,
-        tell: Callable[[], object] = lambda: None,
-    ) -> None:  # fmt: skip
-        """beginning: of the run, or the kept run that goes on. brain: a copy of the one it begins with. tell: is called
-        when something is told that should not be lost."""
-        self.beginning, self.brain = beginning, brain
+        self, session: Session, beginning: Beginning | KeptRun | Fork, tell: Callable[[], object] = lambda: None
+    ) -> None:
+        """beginning: of the run, or the kept run that goes on. tell: is called when something is told that should not be
+        lost."""
+        self.beginning = beginning
         self.folder: Path | None = None  # once something of it is on the disk
-        self.told: deque[Told] = deque()
+        self.told: deque[Callable[[LogWriter], object]] = deque()
         self.hash_cost_s = 0.0  # of the last copy, as the thread that made it tells
         self._tell, self._open = tell, True
         self._ordered_at = session.tick_count  # the tick of the last order
@@ -90,34 +63,43 @@ class RunFeed:
         """The session has run a tick. Its orders for the next one have not been given yet."""
         if not self._open:
             return
-        self.told.append((session.tick_count, tick_checksum(session)))
+        self.tell_tick(session.tick_count, tick_checksum(session))
         if session.tick_count % LOOK_AFTER == 0 and self._is_due(session):
             began = time.thread_time()
-            self.told.append(_copy(session, copy_state(session)))
+            self._copy(session, copy_state(session))
             self._cost_s = time.thread_time() - began
             self._copied_s, self._at = session.time_s, time.monotonic()
+
+    def tell_tick(self, tick: int, checksum: bytes) -> None:
+        self.told.append(lambda writer: writer.tick(tick, checksum))
 
     def order(self, order: Order) -> None:
         if self._open:
             self._ordered_at = order.tick
-            self.told.append(order)
+            self.told.append(lambda writer: writer.order(order))
             self._tell()
 
     def leave(self, session: Session) -> None:
         """Nobody runs the session any more. After an order that no tick has followed its state is none of the log."""
         if self._open and self._ordered_at != session.tick_count:
-            self.told.append(_copy(session, session, last=True))
+            self._copy(session, session, last=True)
 
     def mark(self, rows: tuple[Bookmark, ...]) -> None:
         if self._open:
-            self.told.append(Marked(rows))
+            self.told.append(lambda writer: writer.mark(rows))
             self._tell()
 
     def end(self, why: str) -> None:
         if self._open:
             self._open = False
-            self.told.append(Ended(why))
+            self.told.append(lambda writer: writer.end(why))
             self._tell()
+
+    def _copy(self, session: Session, copy: Session, *, last: bool = False) -> None:
+        source = session.source
+        world = source.worlds[-1].name if source.worlds else ""
+        kept = Copy(session.tick_count, session.time_s, source.world_texts, copy, world, last)
+        self.told.append(lambda writer: writer.copy(kept))
 
     def _is_due(self, session: Session) -> bool:
         """[ours] Wall time decides only how often the state is kept, never what it is.
@@ -127,12 +109,6 @@ class RunFeed:
         if session.time_s - self._copied_s < COPY_EVERY_S - 1e-9:
             return False
         return self._cost_s + self.hash_cost_s <= COPY_SHARE * (time.monotonic() - self._at)
-
-
-def _copy(session: Session, copy: Session, *, last: bool = False) -> Copy:
-    source = session.source
-    world = source.worlds[-1].name if source.worlds else ""
-    return Copy(session.tick_count, session.time_s, source.world_texts, copy, world, last)
 
 
 STATES_PATIENCE_S = 4.0  # a run is whole without its newest hash and state
@@ -157,7 +133,7 @@ class LogWriter:
         """Write what was told since the last time."""
         told = self._feed.told
         while told and not self._given_up:
-            self._try(self._take, told.popleft())
+            self._try(told.popleft(), self)
         if self._given_up:
             told.clear()
         else:
@@ -183,7 +159,7 @@ class LogWriter:
         if isinstance(beginning, KeptRun):
             first_line = self._go_on(beginning)
         else:
-            first_line = self._begin_anew(beginning, feed.brain)
+            first_line = self._begin_anew(beginning)
         assert self._file is not None
         feed.folder = self._folder
         if self._file.without_locks:
@@ -200,34 +176,40 @@ class LogWriter:
         self._log = RunLog(self._file, rows.world, kept.tick, len(rows.orders), rows.edited_bytes)
         return partial(self._log.again, version)
 
-    def _begin_anew(self, beginning: Beginning, brain: RatSlam | None) -> Callable[[], object]:
+    def _begin_anew(self, beginning: Beginning) -> Callable[[], object]:
         header = header_of(beginning)  # takes its time: who is killed before leaves nothing, not a file of nothing
         self._folder = new_folder()
         self._file = LogFile(self._folder)
         self._log = RunLog(self._file, beginning.world)
-        if brain is not None:
+        if beginning.brain is not None:
             with whole_file(self._folder / BRAIN) as file:
-                write_state(encode(brain), file)
+                write_state(encode(beginning.brain), file)
         return partial(self._file.add, written(header))
 
-    def _hashed(self, tick: int, state_hash: str, experiences: int, cost_s: float) -> None:
-        self._feed.hash_cost_s = cost_s
-        self._feed.told.append(Hashed(tick, state_hash, experiences))
+    # ------------------------------------------------------------ what is told
 
-    def _take(self, told: Told) -> None:
-        match told:
-            case (tick, checksum):
-                self._log.tick(tick, checksum)
-            case Order():
-                self._log.order(told)
-            case Copy():
-                self._states.take(told, STATES_PATIENCE_S)
-            case Hashed():
-                self._log.hash(told.tick, told.state_hash, told.experiences)
-            case Marked():
-                self._try(write_bookmarks, told.rows, self._folder)
-            case Ended():
-                self._end = told.why
+    def tick(self, tick: int, checksum: bytes) -> None:
+        self._log.tick(tick, checksum)
+
+    def order(self, order: Order) -> None:
+        self._log.order(order)
+
+    def copy(self, copy: Copy) -> None:
+        self._states.take(copy, STATES_PATIENCE_S)
+
+    def mark(self, rows: tuple[Bookmark, ...]) -> None:
+        """All bookmarks of the run, as they are now."""
+        write_bookmarks(rows, self._folder)
+
+    def end(self, why: str) -> None:
+        self._end = why
+
+    def _hashed(self, tick: int, state_hash: str, experiences: int, cost_s: float) -> None:
+        """Called in the thread that makes hashes of copies."""
+        self._feed.hash_cost_s = cost_s
+        self._feed.told.append(lambda writer: writer._log.hash(tick, state_hash, experiences))
+
+    # ------------------------------------------------------------
 
     def _try(self, write: Callable[..., object], *values: object) -> None:
         try:
@@ -322,10 +304,9 @@ class RunKeeper:
         """Where the run that goes on is kept; None: not yet, or it cannot be."""
         return None if self._feed is None else self._feed.folder
 
-    def feed(self, session: Session, beginning: Beginning | KeptRun | Fork, brain: RatSlam | None = None) -> RunFeed:
-        """The feed of a session that has just begun. brain: a copy of the brain it began with. Nothing is kept before
-        `begin`."""
-        return RunFeed(session, beginning, brain, self._told.set)
+    def feed(self, session: Session, beginning: Beginning | KeptRun | Fork) -> RunFeed:
+        """The feed of a session that has just begun. Nothing is kept before `begin`."""
+        return RunFeed(session, beginning, self._told.set)
 
     def begin(self, feed: RunFeed) -> None:
         """Another run takes the place of the one that went on."""

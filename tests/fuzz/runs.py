@@ -71,7 +71,7 @@ def _kept(with_brain: bool) -> Files:
                 write_state(encode(before.brain), file)
             brain = read_brain(io.BytesIO((folder / BRAIN).read_bytes()))
         session = Session(load_world("loop"), 2, Config(), brain)
-        log_file.add(written(header_of(beginning_of(session, brain=with_brain))))
+        log_file.add(written(header_of(beginning_of(session, brain=brain))))
         lines = RunLog(log_file, session.source.world_texts[0])
         session.on_order = lines.order
         for tick in range(1, TICKS + 1):

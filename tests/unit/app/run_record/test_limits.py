@@ -47,7 +47,7 @@ class Paper:
         self.log = LogWriter(self.feed, self.complaints.append)
 
     def tick(self, tick: int) -> None:
-        self.feed.told.append((tick, bytes(CHECKSUM_BYTES)))
+        self.feed.tell_tick(tick, bytes(CHECKSUM_BYTES))
 
     def kept(self) -> KeptRun:
         self.log.finish()

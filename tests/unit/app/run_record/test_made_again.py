@@ -73,7 +73,7 @@ def test_a_brain_of_its_own_is_in_the_file(tmp_path: Path) -> None:
     path = tmp_path / "brain.npz"
     save_brain(a_session(80).brain, path)
     session = Session(OFFICE, 4, brain=load_brain(path))
-    header = header_of(beginning_of(session, brain=True))
+    header = header_of(beginning_of(session, brain=path))
     for _ in range(30):
         session.tick()
     situation = Situation(header, (), 30, session.state_hash(), brain=path.read_bytes())
