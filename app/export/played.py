@@ -57,11 +57,6 @@ def ticks_in(run: Played, window: Window, progress: Progress, what: str) -> Iter
         raise ValueError(f"the run is {end_s:g} s long, so there is nothing in it from {window.from_s:g} s on")
 
 
-def name_of(session: Session) -> str:
-    """Of its world or of its recording."""
-    return session.world.name if session.recording is None else session.recording.name
-
-
 def last_of(ticks: Iterator[Session]) -> Session:
     """The session as it is after the last tick."""
     session = None

@@ -221,7 +221,7 @@ class TimeMachine:
     def _is_due(self) -> bool:
         """[ours] Wall time decides only how often a recording's state is kept, never what it is. test_going_back.py."""
         session, since = self.live.session, self.live.end_tick - self.live.keyframes[-1].tick
-        if since >= EVERY_TICKS or session.recording is None:
+        if since >= EVERY_TICKS or not session.source.slow:
             return since >= EVERY_TICKS
         mean_ms = sum(mean for mean, _ in session.stopwatch.mean_and_worst_ms.values())
         return since > 0 and since % LOOK_AFTER == 0 and since * mean_ms >= AGAIN_MS
