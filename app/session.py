@@ -16,7 +16,7 @@ from app.companion import SECTIONS, Companion
 from app.config import Config, Value
 from app.evaluation import Evaluation
 from app.hand_packet import put_packet
-from app.order_book import UNCHANGED, Order, order
+from app.orders import UNCHANGED, Order, order
 from app.pilot import Mode, Pilot
 from app.pilot.goal_place import nearest_to, of_its_place
 from app.recordings.playing import Player

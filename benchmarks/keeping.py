@@ -12,9 +12,9 @@ import sys
 import tempfile
 import time
 
-from app.runs.folder import LINES, all_runs
-from app.runs.header import beginning_of
-from app.runs.keeper import RunKeeper
+from app.run_record.folder import LINES, all_runs
+from app.run_record.header import beginning_of
+from app.run_record.writer import RunKeeper
 from app.session import Session
 from disk import copy_state
 from sim2d import load_world
@@ -51,9 +51,9 @@ def one_round(world: str, ticks: int) -> tuple[float, float, float]:
         copy_state(session)
     keeper = RunKeeper(print)
     keeper.start()
-    book = keeper.book(kept, beginning_of(kept))
-    kept.on_order = book.order
-    keeper.begin(book)
+    feed = keeper.feed(kept, beginning_of(kept))
+    kept.on_order = feed.order
+    keeper.begin(feed)
     cost = {False: 0.0, True: 0.0}
     others_s = 0.0
     for block in range(ticks // BLOCK):
@@ -62,7 +62,7 @@ def one_round(world: str, ticks: int) -> tuple[float, float, float]:
             for _ in range(BLOCK):
                 (kept if keeps else plain).tick()
                 if keeps:
-                    book.tick(kept)
+                    feed.tick(kept)
             if block > 0:  # the first compiles
                 spent_s = time.thread_time() - began
                 cost[keeps] += spent_s

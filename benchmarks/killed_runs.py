@@ -27,15 +27,14 @@ from numpy.typing import NDArray
 from app.code_version import code_version
 from app.config import Config
 from app.engine_thread import EngineThread
-from app.runs.book import Book
-from app.runs.folder import LINES, all_runs
-from app.runs.header import Beginning, beginning_of, header_of, written
-from app.runs.journal import line_of
-from app.runs.keeper import RunKeeper
-from app.runs.replay import newest_state, replay
-from app.runs.run_file import KeptRun, open_run
+from app.run_record.folder import LINES, all_runs
+from app.run_record.header import Beginning, beginning_of, header_of, written
+from app.run_record.reader import KeptRun, open_run
+from app.run_record.resume import replayed
+from app.run_record.run_log import line_of
+from app.run_record.states import newest_state
+from app.run_record.writer import RunFeed, RunKeeper
 from app.session import Session
-from ratslam_core import RatSlam
 from sim2d import load_world
 from web import messages as m
 
@@ -57,16 +56,16 @@ class ClockedKeeper(RunKeeper):
         super().__init__(lambda _words: None)
         self._moments = moments
 
-    def book(self, session: Session, beginning: Beginning | KeptRun | object, brain: RatSlam | None = None) -> Book:
-        book = super().book(session, beginning, brain)  # type: ignore[arg-type]
-        tick = book.tick
+    def feed(self, session: Session, beginning: Beginning | KeptRun | object) -> RunFeed:
+        feed = super().feed(session, beginning)  # type: ignore[arg-type]
+        tick = feed.tick
 
         def clocked(session: Session) -> None:
             self._moments[session.tick_count] = time.monotonic()  # before: what is kept must not be newer
             tick(session)
 
-        book.tick = clocked
-        return book
+        feed.tick = clocked
+        return feed
 
 
 def live(world: str, seed: int, moments: NDArray[np.float64], told: int) -> None:
@@ -167,13 +166,13 @@ def main() -> int:
                 try:
                     run = opened(counts, folder)
                     if run is not None:
-                        assert run.last_tick <= ticks, f"tick {run.last_tick} of {ticks}"
-                        if run.last_tick < ticks and not args.full:
-                            lost_ticks.append(ticks - run.last_tick)
-                            lost_s.append(died - float(moments[run.last_tick + 1]))
+                        assert run.tick <= ticks, f"tick {run.tick} of {ticks}"
+                        if run.tick < ticks and not args.full:
+                            lost_ticks.append(ticks - run.tick)
+                            lost_s.append(died - float(moments[run.tick + 1]))
                         if again:
                             counts["with a state beside them"] += newest_state(run) is not None
-                            replay(run)
+                            replayed(run)
                             counts["came out the same when run again"] += 1
                 except (AssertionError, ValueError) as error:
                     faults += 1

@@ -14,9 +14,9 @@ import time
 import numpy as np
 
 from app.cli.serving import PAST_DISK_MB, PAST_MB
-from app.runs.folder import runs_folder
+from app.run_record.folder import runs_folder
+from app.run_record.keyframes import Moment, PastRoom, TimeMachine
 from app.session import Session
-from app.time_machine import Moment, PastRoom, TimeMachine
 from app.views.history import History
 from benchmarks.machine import verdict
 from sim2d import load_world

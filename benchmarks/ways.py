@@ -46,10 +46,10 @@ from app.cli.command_line import main as command
 from app.config import Config
 from app.engine.engine import Engine
 from app.engine_thread import EngineThread
-from app.runs.folder import runs_folder
-from app.runs.keeper import RunKeeper
+from app.run_record.folder import runs_folder
+from app.run_record.keyframes import PastRoom
+from app.run_record.writer import RunKeeper
 from app.session import Session
-from app.time_machine import PastRoom
 from disk import write_whole
 from sim2d import DEFAULT_WORLD, load_world
 from tests.patience import until

@@ -23,7 +23,6 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
 def _a_home_of_its_own(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
     """Nothing is read from what a person has kept, and nothing is left in their home."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("RATSLAM_BRAINS", str(tmp_path_factory.mktemp("kept") / "brains"))
         patch.setenv("RATSLAM_RUNS", str(tmp_path_factory.mktemp("kept") / "runs"))
         patch.setenv("RATSLAM_WORLDS", str(tmp_path_factory.mktemp("kept") / "worlds"))
         yield

@@ -13,9 +13,10 @@ from typing import TYPE_CHECKING
 
 from app.cli.options import checked_seed, config_of, session_of
 from app.config import Config
-from app.order_book import SMALLEST_M
-from app.situations import Situation, read_situation
-from app.situations.document import KEY
+from app.orders import SMALLEST_M
+from app.run_record.link import KEY, read_situation
+from app.run_record.situation import Situation
+from disk import kept_folder
 from disk.limits import SITUATION_BYTES
 from ratslam_core import RatSlam
 from sim2d import DEFAULT_WORLD, World, own_worlds, world_from_json
@@ -23,9 +24,9 @@ from sim2d.importers import open_world
 
 if TYPE_CHECKING:
     from app.engine.engine import Engine
-    from app.kept_brains import KeptBrain
     from app.protocol.trial import Trial
-    from app.runs.run_file import KeptRun
+    from app.run_record.reader import KeptRun
+    from app.run_record.states import KeptBrain
     from web import messages as m
 
 _NOT_WITH_RECORDING = ("scale", "brain", "resume_brain", "experiment", "engine", "levels")
@@ -62,9 +63,10 @@ def new_run(args: argparse.Namespace) -> First:
 
 def _kept_brain(args: argparse.Namespace) -> KeptBrain | None:
     """The brain kept last: with --resume-brain set up to be run, without it returned, to be offered on the page."""
-    from app.kept_brains import folder, newest
+    from app.run_record.folder import runs_folder
+    from app.run_record.states import newest_brain
 
-    kept = newest()
+    kept = newest_brain()
     if not args.resume_brain:
         if kept is None or args.brain is not None:
             return None
@@ -73,22 +75,28 @@ def _kept_brain(args: argparse.Namespace) -> KeptBrain | None:
     if args.brain is not None:
         raise ValueError(f"--resume-brain takes the brain that was kept last; do not give --brain {args.brain} with it")
     if kept is None:
-        raise ValueError(f"--resume-brain: no brain is kept in {folder()}")
+        raise ValueError(f"--resume-brain: no brain is kept in {runs_folder()}{_of_before()}")
     args.brain, args.world, args.seed = kept.path, kept.about.world, kept.about.seed
     return None
 
 
+def _of_before() -> str:
+    """Earlier programs kept brains in a folder of their own."""
+    folder = kept_folder() / "brains"
+    return f"; those of an earlier version are in {folder}: --brain FILE takes one" if folder.exists() else ""
+
+
 def cut_off_run() -> KeptRun | None:
     """The newest run, if it was cut off in the middle, by a crash or a kill."""
-    from app.runs.folder import all_runs, is_open
-    from app.runs.run_file import open_run
+    from app.run_record.folder import all_runs, is_open
+    from app.run_record.reader import open_run
 
     for folder in all_runs()[:1]:
         try:
             run = open_run(folder)
         except ValueError:
             return None
-        if run.last_tick > 0 and not run.end and not is_open(folder):
+        if run.tick > 0 and not run.end and not is_open(folder):
             print(f"The run {run.name} was cut off: go on with it by `ratslam run --resume {run.name}`", flush=True)
             return run
     return None
@@ -96,7 +104,7 @@ def cut_off_run() -> KeptRun | None:
 
 def going_on(kept: KeptRun, tell: Callable[[float], object]) -> m.GoOn:
     """The run in the session where it was left. tell: is given the share that is done, and may raise to give it up."""
-    from app.runs.replay import resumed
+    from app.run_record.resume import resumed
     from web import messages as m
 
     done_s = 0.0
@@ -112,9 +120,9 @@ def going_on(kept: KeptRun, tell: Callable[[float], object]) -> m.GoOn:
 def resumed_run(args: argparse.Namespace) -> First:
     """Go on with a run where it was left; what led there is run again first."""
     from app.cli.progress import compile_first, with_progress
-    from app.runs.folder import busy_words, is_open
-    from app.runs.replay import resumed
-    from app.runs.run_file import open_run
+    from app.run_record.folder import busy_words, is_open
+    from app.run_record.reader import open_run
+    from app.run_record.resume import resumed
 
     _refuse(args, _NOT_WITH_A_RUN, "--resume: the run has its own")
     kept = open_run(args.resume)

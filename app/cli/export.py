@@ -46,7 +46,7 @@ def add_export(commands: Verbs) -> None:
 
 def _export(args: argparse.Namespace) -> int:
     from app.export import Choices, Window, check_export, export_run
-    from app.runs.run_file import open_run
+    from app.run_record.reader import open_run
 
     window = Window(args.from_s, args.until_s)
     run = open_run(args.run)

@@ -50,11 +50,11 @@ def port_number(text: str) -> int:
 
 
 def session_of(args: argparse.Namespace) -> tuple[World, Config, RatSlam | None]:
-    from ratslam_core import load_brain
+    from app.session_snapshot import load_its_brain
     from sim2d.importers import open_world
 
     checked_seed(args.seed)
-    brain = None if args.brain is None else load_brain(args.brain)
+    brain = None if args.brain is None else load_its_brain(args.brain)
     config = config_of(args, Config() if brain is None else Config().with_engine(brain.params))
     for words in config.warnings:
         print(f"ratslam: note: {words}", file=sys.stderr)

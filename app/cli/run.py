@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from app.cli.options import ENGINES, Verbs, add_session_options, port_number
 from app.cli.serving import PAST_DISK_MB, PAST_MB, Serving, serve
-from app.runs.folder import BUDGET_MB
+from app.run_record.folder import BUDGET_MB
 
 if TYPE_CHECKING:
     from app.cli.beginnings import First
@@ -43,7 +43,7 @@ def add_run(commands: Verbs) -> None:
     )
     run.add_argument(
         "--keep-runs", type=float, default=BUDGET_MB, metavar="MB",
-        help=f"room for the runs that are kept; the oldest are deleted first (default {BUDGET_MB:g}, 0 = keep none)",
+        help=f"room for the runs that are kept; the oldest are deleted first (default {BUDGET_MB:g}, 0 = none, and no brain)",
     )  # fmt: skip
     run.add_argument(
         "--keep-past", type=float, default=PAST_MB, metavar="MB",

@@ -29,7 +29,7 @@ def add_replay(commands: Verbs) -> None:
 
 
 def _list(args: argparse.Namespace) -> int:
-    from app.runs.folder import all_runs, runs_folder
+    from app.run_record.folder import all_runs, runs_folder
 
     try:
         where = f" in {runs_folder()}"
@@ -49,8 +49,8 @@ def _list(args: argparse.Namespace) -> int:
 
 
 def _row(folder: Path) -> dict[str, Any]:
-    from app.runs.folder import is_open
-    from app.runs.run_file import open_run
+    from app.run_record.folder import is_open
+    from app.run_record.reader import open_run
 
     try:
         run = open_run(folder)
@@ -59,7 +59,7 @@ def _row(folder: Path) -> dict[str, Any]:
     state = "complete" if run.end else "goes on in another program" if is_open(folder) else "cut off"
     header = run.header
     return {
-        "id": run.name, "made_at": header.made_at, "world": header.world_name, "seed": header.seed, "ticks": run.last_tick,
+        "id": run.name, "made_at": header.made_at, "world": header.world_name, "seed": header.seed, "ticks": run.tick,
         "simulated_s": run.length_s, "orders": len(run.orders), "experiences": run.experiences, "state": state,
         "end": run.end, "trial": header.trial, "version": header.version, "same_version": header.same_program,
     }  # fmt: skip
@@ -78,7 +78,7 @@ def _line(row: dict[str, Any]) -> str:
 
 
 def _delete(args: argparse.Namespace) -> int:
-    from app.runs.folder import LINES, all_runs, delete
+    from app.run_record.folder import LINES, all_runs, delete
 
     runs = {folder.name: folder for folder in all_runs()}
     name = next(iter(runs), args.run) if args.run == "last" else args.run
@@ -91,16 +91,16 @@ def _delete(args: argparse.Namespace) -> int:
 
 def _replay(args: argparse.Namespace) -> int:
     """0: it comes out the same; 1: it differs."""
-    from app.runs.replay import ReplayError, replay
-    from app.runs.run_file import open_run
+    from app.run_record.reader import open_run
+    from app.run_record.resume import ReplayError, replayed
 
     run = open_run(args.run)
     compile_first()
     try:
-        with_progress(run.length_s, lambda tell: replay(run, lambda s: tell(s, "running it again")))
+        with_progress(run.length_s, lambda tell: replayed(run, lambda s: tell(s, "running it again")))
     except ReplayError as error:
         print(error)
         return 1
     damage = f"; {run.damage}" if run.damage else ""
-    print(f"same: {run.last_tick} ticks, {len(run.orders)} orders, {len(run.hashes)} hashes of the state{damage}")
+    print(f"same: {run.tick} ticks, {len(run.orders)} orders, {len(run.hashes)} hashes of the state{damage}")
     return 0

@@ -12,12 +12,12 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.runs.folder import BUDGET_MB, runs_folder
+from app.run_record.folder import BUDGET_MB, runs_folder
 
 if TYPE_CHECKING:
     from app.cli.beginnings import First
+    from app.run_record.keyframes import PastRoom
     from app.startup.compiling import Compiling
-    from app.time_machine import PastRoom
     from web.http.class_door import Classroom
     from web.http.server import Dashboard, ForClass
 
@@ -51,7 +51,7 @@ def serve(serving: Serving, first: First) -> int:
 
 
 def _past_room(serving: Serving) -> PastRoom:
-    from app.time_machine import PastRoom
+    from app.run_record.keyframes import PastRoom
 
     try:
         folder = runs_folder()
@@ -66,11 +66,10 @@ def _serve(serving: Serving, first: First, compiling: Compiling) -> int:
     from app.export.page import PageExports
     from app.gallery.gallery import StoredGallery
     from app.gallery.lessons import StoredLessons
-    from app.kept_brains import BrainKeeper
-    from app.runs.keeper import RunKeeper
-    from app.situations.page import PageSituations
+    from app.run_record.link import PageSituations
+    from app.run_record.writer import RunKeeper
+    from app.session_snapshot import load_its_brain
     from app.startup.waking import Waking
-    from ratslam_core import load_brain
     from web import messages as m
     from web.http.kept_offer import Offered
     from web.http.server import CannotListen, Dashboard
@@ -89,7 +88,7 @@ def _serve(serving: Serving, first: First, compiling: Compiling) -> int:
     )  # fmt: skip
     viewers = Viewers(engine.latest, engine.submit)
     kept, cut_off = first.kept, first.cut_off
-    offered = kept and Offered(**asdict(kept.about), read=partial(load_brain, kept.path))
+    offered = kept and Offered(**asdict(kept.about), read=partial(load_its_brain, kept.path))
     if cut_off is not None:
         offered = Offered(
             cut_off.header.world_name, cut_off.header.seed, cut_off.length_s, cut_off.experiences or 0, cut_off.left_at,
@@ -105,20 +104,17 @@ def _serve(serving: Serving, first: First, compiling: Compiling) -> int:
     except CannotListen as error:
         raise ValueError(str(error)) from None
 
-    waking, keeper = Waking(engine, compiling), BrainKeeper(engine.latest, engine.submit)
+    waking = Waking(engine, compiling)
     dashboard.on_ready, engine.on_stillborn = partial(_tell, serving, dashboard), dashboard.stop
     waking.start()
-    keeper.start()
     if runs is not None:
         runs.start()
     try:
         dashboard.run()
     finally:
-        keeper.leave()
         waking.stop(ENGINE_PATIENCE_S)
         if runs is not None:
             runs.stop()
-        keeper.stop()
     if engine.stillborn is not None:
         raise ValueError(f"the engine could not begin: {engine.stillborn}")
     return 0

@@ -11,7 +11,7 @@ from app.config import Config, Value
 from app.config.pairs import engine_of, pair_of
 from app.config.presets import values_of
 from app.engine.engine import Engine
-from app.runs.run_file import KeptRun
+from app.run_record.reader import KeptRun
 from app.session import Session, config_beside
 from app.views.beside import differences_of
 from disk import copy_state

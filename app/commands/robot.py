@@ -71,7 +71,7 @@ def read_experience(engine: Engine, request: m.ReadExperience) -> Outcome:
 def read_session(engine: Engine, _: m.ReadSession) -> Outcome:
     """The whole state; None of a recording's, which cannot be told from the state alone."""
     session = engine.run.session
-    return m.Accepted(session.tick_count, None if session.recording is not None else take_session(session))
+    return m.Accepted(session.tick_count, take_session(session) if session.source.worlds else None)
 
 
 def warn(engine: Engine, request: m.Warn) -> Outcome:

@@ -4,18 +4,12 @@ moment that is shown, or to another that is opened."""
 from __future__ import annotations
 
 from collections.abc import Generator
-from pathlib import Path
 
 from app.commands.outcome import Outcome, Working
 from app.engine.engine import Engine
-from app.engine.run import Run
 from app.engine.work import Work
-from app.order_book import Order
-from app.runs.folder import BRAIN
-from app.runs.header import Beginning
-from app.runs.run_file import KeptRun
-from app.situations import LedHere, Situation
-from ratslam_core import RatSlam
+from app.run_record.reader import KeptRun
+from app.run_record.situation import ReplaySpec, Situation
 from web import messages as m
 
 
@@ -110,9 +104,13 @@ def remove_bookmark(engine: Engine, command: m.RemoveBookmark) -> Outcome:
 
 
 def read_situation(engine: Engine, _: m.ReadSituation) -> Outcome:
-    first, orders = engine.time.led_here()
-    began, brain, earlier = _beginning_of(first)
-    return m.Accepted(engine.shown.session.tick_count, LedHere(began, brain, [*earlier, *orders], engine.shown.session))
+    first, orders = engine.time.origin()
+    began = first.beginning
+    assert began is not None  # a recording is refused before
+    if isinstance(began, KeptRun):
+        orders, began = [*began.orders, *orders], began.beginning
+    session = engine.shown.session
+    return m.Accepted(session.tick_count, ReplaySpec(began, orders, session))
 
 
 def open_situation(engine: Engine, request: m.OpenSituation) -> Outcome:
@@ -130,14 +128,3 @@ def leave_situation(engine: Engine, _: m.LeaveSituation) -> Outcome:
         return m.Refused("type", "leave_situation", "no situation is being played up to its moment")
     engine.leave_situation()
     return None
-
-
-def _beginning_of(run: Run) -> tuple[Beginning, RatSlam | Path | None, list[Order]]:
-    """What a run began from, the brain that it began with, and the orders of the kept run that it goes on with."""
-    began = run.beginning
-    assert began is not None  # a recording is refused before
-    if isinstance(began, KeptRun):
-        header = began.header
-        first = Beginning(header.world, header.world_name, header.seed, header.config, header.brain, header.trial)
-        return first, began.folder / BRAIN if header.brain else None, began.orders
-    return began, run.first_brain, []

@@ -23,14 +23,13 @@ from app.engine.work import Slices, Work
 from app.protocol.performance import session_of
 from app.protocol.trial import Trial
 from app.recordings.playing import Player
-from app.runs.book import Book, Fork
-from app.runs.bookmarks import read_bookmarks
-from app.runs.header import Beginning, beginning_of, recorded_beginning
-from app.runs.keeper import RunKeeper
-from app.runs.run_file import KeptRun
+from app.run_record.bookmarks import read_bookmarks
+from app.run_record.header import Beginning, beginning_of, recorded_beginning
+from app.run_record.keyframes import PastRoom
+from app.run_record.reader import KeptRun
+from app.run_record.situation import Situation
+from app.run_record.writer import Fork, RunFeed, RunKeeper
 from app.session import Session, played_session
-from app.situations import Situation
-from app.time_machine import PastRoom
 from app.views.snapshots import PairChoices
 from app.views.tick_stages import TickRecorder
 from app.world_editor import WorldEditor
@@ -199,6 +198,12 @@ class Engine:
         self.run.stop_running_ahead()
         return None
 
+    def leave(self) -> None:
+        """The program ends: nothing runs the session any more."""
+        self.break_off()
+        if self._run is not None and self._run.feed is not None:
+            self._run.feed.leave(self._run.session)
+
     def fail(self, error: BaseException) -> None:
         """Stop at a fault. A fault that repeats is reported once."""
         words = words_of(error)
@@ -207,8 +212,8 @@ class Engine:
             with contextlib.suppress(Exception):  # there may be nobody to print to
                 traceback.print_exception(error)
         self.break_off()
-        if self._run is not None and self._run.book is not None:
-            self._run.book.end(f"it stopped at a fault: {words}")
+        if self._run is not None and self._run.feed is not None:
+            self._run.feed.end(f"it stopped at a fault: {words}")
         if new and self._run is not None:
             self._run.event_log.note("fault", words)
 
@@ -249,7 +254,7 @@ class Engine:
         before = None if old is None or self.fault is not None else old.session  # after a fault it may be half changed
         kept = None if brain is None else copy_state(brain)  # the session will go on with the brain itself
         session = Session(world, seed, config, brain, before)
-        run = self._make_run(session, beginning_of(session, brain=brain is not None), kept)
+        run = self._make_run(session, beginning_of(session, brain=kept))
         if brain is not None:  # a foreign brain must be one that can be shown: try it before it is accepted
             run.require_showable()
         return self._change_to(run, world)
@@ -318,9 +323,7 @@ class Engine:
         brain = situation.first_brain()
         kept = None if brain is None else copy_state(brain)
         session = situation.begin(brain)
-        run = self._make_run(
-            session, beginning_of(session, brain=brain is not None, trial=situation.header.trial), kept
-        )
+        run = self._make_run(session, beginning_of(session, brain=kept, trial=situation.header.trial))
         run.require_showable()
         before = None if self._run is None or self.fault is not None else (self._run, self.time, self.editor.world)
         if session.world.name not in dict(self.library.titles):
@@ -338,8 +341,8 @@ class Engine:
             self.run.stop_running_ahead()
             return
         run, time, world = before
-        if run.book is not None:
-            run.book = self._book(run.session, Fork(run.book))
+        if run.feed is not None:
+            run.feed = self._feed(run.session, Fork(run.feed))
         run.snapshots.refresh()
         self._time = time
         self._go_on_with(run, world)
@@ -347,12 +350,12 @@ class Engine:
 
     def go_on_from_here(self) -> Run:
         """Make the moment that is shown the present of a new branch, paused. ValueError says why that cannot be."""
-        before, marks, lesson = self.run.book, self.run.bookmarks, self.run.lesson
+        before, marks, lesson = self.run.feed, self.run.bookmarks, self.run.lesson
         run = self.time.go_on_from_here(self._next_number)
         if run.session.source.world is None:
             run.config_before = self.next_config
         if before is not None:
-            run.book = self._book(run.session, Fork(before, run.session.tick_count))
+            run.feed = self._feed(run.session, Fork(before, run.session.tick_count))
         run.bookmarks = marks.until(run.session.tick_count)
         run.keep_bookmarks()
         run.lesson = None if lesson is None else LessonRun(lesson.teaching, run.session, run.history, branch=True)
@@ -361,8 +364,8 @@ class Engine:
     def change_branch(self, number: int) -> Run:
         """Go on with another branch, paused. ValueError names those that there are."""
         run = self.time.change_to(number)
-        if run.book is not None:
-            run.book = self._book(run.session, Fork(run.book))
+        if run.feed is not None:
+            run.feed = self._feed(run.session, Fork(run.feed))
         return self._go_on_paused(run)
 
     def _go_on_paused(self, run: Run) -> Run:
@@ -370,16 +373,13 @@ class Engine:
         self.running = False
         return run
 
-    def _make_run(self, session: Session, beginning: Beginning | KeptRun | None, brain: RatSlam | None = None) -> Run:
+    def _make_run(self, session: Session, beginning: Beginning | KeptRun | None) -> Run:
         run = Run(self._next_number, session, self.library.titles)
-        run.book = self._book(session, beginning, brain)
-        run.beginning, run.first_brain = beginning, brain
+        run.feed, run.beginning = self._feed(session, beginning), beginning
         return run
 
-    def _book(
-        self, session: Session, beginning: Beginning | KeptRun | Fork | None, brain: RatSlam | None = None
-    ) -> Book | None:
-        return None if self._keeper is None or beginning is None else self._keeper.book(session, beginning, brain)
+    def _feed(self, session: Session, beginning: Beginning | KeptRun | Fork | None) -> RunFeed | None:
+        return None if self._keeper is None or beginning is None else self._keeper.feed(session, beginning)
 
     @property
     def _next_number(self) -> int:
@@ -398,8 +398,8 @@ class Engine:
         self.editor.begin(world)
         self.running = self.running or self.fault is not None
         self._run, self.fault = run, None
-        if self._keeper is not None and run.book is not None:
-            self._keeper.begin(run.book)
+        if self._keeper is not None and run.feed is not None:
+            self._keeper.begin(run.feed)
         self.pace.begin()
         return run
 

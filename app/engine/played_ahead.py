@@ -3,12 +3,14 @@ hashes are compared."""
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING
 
 from app.engine.guide import Guide
-from app.order_book import Order, carry_out
+from app.orders import Order, carry_out
+from app.run_record.record import replay
+from app.run_record.situation import Situation
 from app.session import Session
-from app.situations import Situation
 from app.views.event_log import EventLog
 from app.views.office import goal_view
 from sim2d import World
@@ -42,6 +44,16 @@ def events_of(order: Order, session: Session) -> list[tuple[EventKind, str]]:
     return [("office", _OFFICE[name].format_map(values))] if name in _OFFICE else []
 
 
+def _give(log: EventLog, session: Session, order: Order) -> None:
+    carry_out(session, order)
+    for kind, words in events_of(order, session):
+        log.note(kind, words)
+
+
+def _by_the_run(_session: Session, _watch: object) -> None:
+    """The run that is open runs the ticks."""
+
+
 class PlayedAhead(Guide):
     """Call `advance` at the beginning and after each tick. before: the run that waits until this one is at its moment."""
 
@@ -52,28 +64,25 @@ class PlayedAhead(Guide):
         self.state: SituationState = "playing"
         self._words = ""
         self._session, self._log = session, log
-        self._orders = list(situation.orders[::-1])
+        give = partial(_give, log)
+        self._replay = replay(session, situation.orders_after, situation.tick, give=give, tick=_by_the_run)
+        next(self._replay)
 
     def advance(self) -> None:
         """Give the orders of the tick that has just been run; at the moment, see whether it is the same."""
         if self.state != "playing":
             return
-        tick = self._session.tick_count
-        while self._orders and self._orders[-1].tick <= tick:
-            order = self._orders.pop()
-            try:
-                carry_out(self._session, order)
-            except Exception as error:  # the order comes from elsewhere, and may be one that no page would give
-                self.stop(f"the order {order.name} of tick {order.tick} cannot be carried out: {error}")
-                self._log.note("warning", self._words)
+        try:
+            if next(self._replay, None) is not None:
                 return
-            for kind, words in events_of(order, self._session):
-                self._log.note(kind, words)
-        if tick >= self.situation.tick:
-            same, self._words = self.situation.verdict(self._session)
-            self.state, self.before = "same" if same else "other", None
-            if not same:
-                self._log.note("warning", self._words)
+        except ValueError as error:
+            self.stop(str(error))
+            self._log.note("warning", self._words)
+            return
+        same, self._words = self.situation.verdict(self._session)
+        self.state, self.before = "same" if same else "other", None
+        if not same:
+            self._log.note("warning", self._words)
 
     @property
     def runs_ahead(self) -> bool:

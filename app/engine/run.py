@@ -9,18 +9,17 @@ from app.engine.played_ahead import PlayedAhead
 from app.engine.waiting import RunUntil
 from app.engine.watchdog import require_finite
 from app.engine.watched_trial import WatchedTrial
-from app.order_book import Order
-from app.runs.book import Book
-from app.runs.bookmarks import Bookmarks
-from app.runs.header import Beginning
-from app.runs.run_file import KeptRun
+from app.orders import Order
+from app.run_record.bookmarks import Bookmarks
+from app.run_record.header import Beginning
+from app.run_record.keyframes import TimeMachine
+from app.run_record.reader import KeptRun
+from app.run_record.writer import RunFeed
 from app.session import Session
-from app.time_machine import TimeMachine
 from app.views.event_log import EventLog
 from app.views.history import History, VisitLog
 from app.views.snapshots import Snapshots
 from app.views.tick_stages import TickRecorder
-from ratslam_core import RatSlam
 
 
 class Run:
@@ -37,11 +36,10 @@ class Run:
         self.beginning: Beginning | KeptRun | None = (
             None  # None: of a recording, and of a branch, which has its parent's
         )
-        self.first_brain: RatSlam | None = None  # a copy of the one that it began with
         self.lesson: LessonRun | None = None
         self.until: RunUntil | None = None  # what `run_until` waits for
         self.config_before: Config | None = None  # a trial's settings go with it
-        self.book: Book | None = None  # in which the run is kept
+        self.feed: RunFeed | None = None  # of who keeps the run
         self.bookmarks = Bookmarks()
         self.history = history or History(self.session)
         self.snapshots = Snapshots(self.session, self.history, number, titles)
@@ -51,14 +49,14 @@ class Run:
         session.on_order = self._told
 
     def _told(self, order: Order) -> None:
-        if self.book is not None:
-            self.book.order(order)
+        if self.feed is not None:
+            self.feed.order(order)
         if self.machine is not None:
             self.machine.told(order)
 
     def keep_bookmarks(self) -> None:
-        if self.book is not None:
-            self.book.mark(self.bookmarks.rows)
+        if self.feed is not None:
+            self.feed.mark(self.bookmarks.rows)
 
     @property
     def event_log(self) -> EventLog:
@@ -77,8 +75,8 @@ class Run:
             guide.before_tick()
         self.session.tick(recorder)
         require_finite(self.session)
-        if self.book is not None:
-            self.book.tick(self.session)
+        if self.feed is not None:
+            self.feed.tick(self.session)
         self.history.watch()
         if self.machine is not None:  # before the guides' orders, which come after this tick
             self.machine.ticked()

@@ -6,8 +6,9 @@ from collections.abc import Generator
 
 from app.engine.run import Run
 from app.engine.work import Work
-from app.order_book import Order
-from app.time_machine import Branch, Moment, PastRoom, TimeMachine, first_difference, side_of
+from app.orders import Order
+from app.run_record.comparison import first_difference, side_of
+from app.run_record.keyframes import Branch, Moment, PastRoom, TimeMachine
 from app.views.tick_stages import TickRecorder
 from web.messages import BranchView, Side, TimeView
 
@@ -36,7 +37,7 @@ class TimeTravel:
     def _live(self) -> Run:
         return self._runs[self._machine.live.number]
 
-    def led_here(self) -> tuple[Run, list[Order]]:
+    def origin(self) -> tuple[Run, list[Order]]:
         """The run that all branches began as, and every order from there to what is shown: to the present, with those
         given just now, or to a moment of the past, before those that were given then."""
         branch, moment = self._machine.live, self._moment

@@ -19,9 +19,9 @@ from app.engine.engine import Engine
 from app.engine.pace import LONGEST_WAIT_S, SLICE_S, Pace
 from app.engine.watchdog import Watchdog, words_of
 from app.engine_thread.inbox import Inbox
-from app.runs.keeper import RunKeeper
+from app.run_record.keyframes import PastRoom
+from app.run_record.writer import RunKeeper
 from app.session import Session
-from app.time_machine import PastRoom
 from ratslam_core import RatSlam
 from sim2d import World
 from web import messages as m
@@ -92,7 +92,7 @@ class EngineThread:
             finally:
                 self._inbox.give()
         self._watchdog.stop()
-        self._engine.break_off()
+        self._engine.leave()
         self._inbox.close("the engine has ended; start the program again")
 
     def _begin(self) -> bool:

@@ -71,7 +71,7 @@ def export_run(
 def _suitable(to: Format, ticks: Iterator[Session]) -> Iterator[Session]:
     """ValueError at the first tick: the format shows an office, and the run is that of a recording."""
     for session in ticks:
-        if session.recording is not None and to in OF_OFFICES:
+        if not session.source.worlds and to in OF_OFFICES:
             others = ", ".join(other for other in FORMATS if other not in OF_OFFICES)
             raise ValueError(f"{to} is for runs in an office; the run of a recording can be had as {others}")
         yield session

@@ -16,7 +16,7 @@ _CLOSE_S = 1e-6  # the times of ticks are rounded, those that people give are no
 class Played(Protocol):
     """A run that was kept, or that can be made again in another way."""
 
-    def play(self, until: int | None = None) -> Iterator[Session]:
+    def replay(self, until: int | None = None) -> Iterator[Session]:
         """The session before its first tick and after each tick up to this one, always the same object. The orders of a
         tick are carried out after it was handed out."""
         ...
@@ -43,7 +43,7 @@ def ticks_in(run: Played, window: Window, progress: Progress, what: str) -> Iter
     """The session after each tick of the window. ValueError when the run ended before it."""
     said_s = end_s = 0.0
     some = False
-    for session in run.play():
+    for session in run.replay():
         end_s = session.time_s
         if end_s - said_s >= 1.0:
             progress(end_s - said_s, what)
@@ -55,11 +55,6 @@ def ticks_in(run: Played, window: Window, progress: Progress, what: str) -> Iter
             break
     if not some:
         raise ValueError(f"the run is {end_s:g} s long, so there is nothing in it from {window.from_s:g} s on")
-
-
-def name_of(session: Session) -> str:
-    """Of its world or of its recording."""
-    return session.world.name if session.recording is None else session.recording.name
 
 
 def last_of(ticks: Iterator[Session]) -> Session:

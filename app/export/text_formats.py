@@ -12,7 +12,6 @@ from xml.etree import ElementTree as Tree
 import numpy as np
 from numpy.typing import NDArray
 
-from app.export.played import name_of
 from app.session import Session
 from ratslam_core import Pose2
 
@@ -53,14 +52,14 @@ def _row(session: Session, odometry: Pose2) -> tuple[object, ...]:
     robot, seen, packet = estimate.pose_map_robot, estimate.recognition, estimate.packet
     off = (math.nan, math.nan) if truth is None else session.evaluation.belief_off(truth, session.brain.experience_map)
     true = ("", "", "") if truth is None else (truth.x, truth.y, truth.heading_rad)
-    recorded = session.recording is not None
+    driven = session.source.driven
     return (
         session.tick_count, round(session.time_s, 9), told.dt, *true, told.speed,
         told.yaw_rate, odometry.x, odometry.y, odometry.heading_rad, robot.x, robot.y, robot.heading_rad,
         estimate.experience, int(estimate.created), seen.view, int(seen.recruited), packet.x, packet.y,
         packet.heading_rad, packet.mass, int(estimate.relocalised), int(session.brain.lost),
-        *("" if math.isnan(value) else value for value in off), "recorded" if recorded else session.pilot.mode,
-        "" if recorded else session.pilot.behaviour.number,
+        *("" if math.isnan(value) else value for value in off), session.pilot.mode if driven else "recorded",
+        session.pilot.behaviour.number if driven else "",
         int(session.frame.bumped),
     )  # fmt: skip
 
@@ -141,7 +140,7 @@ def graphml_text(session: Session) -> bytes:
         for name, value in columns.items():
             key = {"id": f"{kind}-{name}", "for": kind, "attr.name": name, "attr.type": value}
             Tree.SubElement(root, "key", key)
-    graph = Tree.SubElement(root, "graph", id=name_of(session), edgedefault="directed")
+    graph = Tree.SubElement(root, "graph", id=session.source.name, edgedefault="directed")
     columns = zip(map_.poses.tolist(), map_.views.tolist(), map_.island_of.tolist(), strict=True)
     for i, (pose, view, island) in enumerate(columns):
         _add(Tree.SubElement(graph, "node", id=str(i)), "node", dict(zip(_NODE, (*pose, view, island), strict=True)))

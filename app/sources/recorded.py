@@ -32,6 +32,7 @@ class Recorded:
     CACHES = ("recording", "player", "frame", "over", "_reel", "_sensed")
     parts: tuple[str, ...] = ("recording",)
     world: World | None = None
+    driven, slow = False, True
     foreign: tuple[str, ...] = ("robot", "office", "pilot")
 
     def __init__(self, player: Player) -> None:
@@ -76,6 +77,10 @@ class Recorded:
         return self._sensed
 
     # ------------------------------------------------------------ looking
+
+    @property
+    def name(self) -> str:
+        return self.player.recording.about.name
 
     @property
     def truth(self) -> Truth | None:

@@ -21,6 +21,7 @@ class Simulated:
 
     CACHES = ("world", "frame", "_text", "_text_now")
     recording: About | None = None
+    driven, slow = True, False
     parts: tuple[str, ...] = ("pilot", "office and senses")
     foreign: tuple[str, ...] = ()
     over: bool = False  # an office always has more to tell
@@ -58,6 +59,10 @@ class Simulated:
         self.frame = self.simulator.observe()
 
     # ------------------------------------------------------------ looking
+
+    @property
+    def name(self) -> str:
+        return self.world.name
 
     @property
     def truth(self) -> Truth:

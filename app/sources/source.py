@@ -16,10 +16,17 @@ from sim2d import SensorFrame, Truth, World
 class Source(Protocol):
     """Simulated | Recorded. It is a part of the session's state."""
 
-    recording: About | None  # what a recording says of itself; None: there is an office, and a robot that can be driven
+    recording: About | None  # what a recording says of itself, for people
+    driven: bool  # by the pilot
+    slow: bool  # its ticks may take long to be made again
     parts: tuple[str, ...]  # of a tick, before those of the brain
     foreign: tuple[str, ...]  # sections of the parameters that mean nothing to it
     frame: SensorFrame  # what was sensed last
+
+    @property
+    def name(self) -> str:
+        """Of its world or of its recording."""
+        ...
 
     @property
     def over(self) -> bool:

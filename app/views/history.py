@@ -72,7 +72,7 @@ class Trails:
 
     def __init__(self, session: Session) -> None:
         self._session = session
-        self._most = int((TRAIL_S if session.recording is None else RECORDED_S) / session.frame.dt) // 2
+        self._most = int((TRAIL_S if session.source.worlds else RECORDED_S) / session.frame.dt) // 2
         self.robot = _no_points(2)  # true path, (t, 2), office frame
         self.packet = _no_points(3)  # of the winning packet, (p, 3): x', y' (cells), heading (rad)
 
@@ -187,7 +187,7 @@ class RunSeries:
     def settle(self, session: Session) -> None:
         """Go on in a history that was restored."""
         self._session = session
-        if session.recording is None:
+        if session.source.worlds:
             self._covered.settle(session.simulator.free_space)
         self.series = self._shown()
 
@@ -207,7 +207,7 @@ class RunSeries:
         if session.truth is not None:
             errors = self.error_map_m, self.error_odometry_m = session.evaluation.errors(brain.experience_map, every)
             self.map_in_office = session.evaluation.map_in_office(brain.experience_map, every)
-        if session.recording is None:
+        if session.source.worlds:
             self.coverage = self._covered.follow(session.simulator.free_space, session.evaluation.path)
         self.map_turn_rad = self._turn(self.map_turn_rad)
         views, experiences = len(brain.local_view), len(brain.experience_map)

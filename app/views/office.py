@@ -136,7 +136,7 @@ def known_places(session: Session) -> tuple[KnownPlace, ...]:
 
     Only people know where the names belong. The robot is told a place of its own map, as with any click on the map.
     """
-    if session.recording is not None:
+    if not session.source.worlds:
         return ()
     poses = session.brain.experience_map.poses
     births = session.evaluation.births(len(poses))

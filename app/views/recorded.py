@@ -58,8 +58,7 @@ def _grown(bounds: Bounds, points: np.ndarray) -> Bounds:
 
 
 def _ground(session: Session, bounds: Bounds) -> WorldDrawing:
-    assert session.recording is not None
-    name = session.recording.name
+    name = session.source.name
     none = frozen(np.zeros(0, np.float32))
     return WorldDrawing(
         name=name,

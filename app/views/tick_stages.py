@@ -113,7 +113,7 @@ class TickRecorder:
     def _image(self) -> str:
         odometry = self._session.odometry
         way, turn = 100 * odometry.speed * odometry.dt, math.degrees(odometry.yaw_rate * odometry.dt)
-        who = "The wheels report" if self._session.recording is None else "The recording tells of"
+        who = "The wheels report" if self._session.source.driven else "The recording tells of"
         return f"{who} {_plain(way, 1)} cm ahead and a turn of {_plain(turn, 1)}°; then the camera takes a picture."
 
     def _view_match(self) -> str:

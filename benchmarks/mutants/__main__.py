@@ -34,7 +34,7 @@ from benchmarks.mutants.operators import Mutant, mutants_of
 from benchmarks.mutants.trees import ROOT, Trees
 
 ROOMS = (
-    "ratslam_core", "sim2d", "disk", "app/pilot", "app/engine", "app/protocol", "app/runs", "app/views",
+    "ratslam_core", "sim2d", "disk", "app/pilot", "app/engine", "app/protocol", "app/run_record", "app/views",
     "web/http", "web/messages", "web/panel", "web/viewer", "web/static",
 )  # fmt: skip
 NOT_MUTATED = ("laws", "params", "vendor")  # guards of files, declarations, what others wrote

@@ -30,14 +30,13 @@ class Program:
     """`ratslam run` with these arguments, alive when the constructor returns."""
 
     def __init__(self, *arguments: str, start: str = START, **environment: str) -> None:
-        self._brains = tempfile.TemporaryDirectory()  # where the program keeps them and its runs; removed afterwards
-        kept = {"RATSLAM_BRAINS": self._brains.name, "RATSLAM_RUNS": os.path.join(self._brains.name, "runs")}
+        self._runs = tempfile.TemporaryDirectory()  # where the program keeps them; removed afterwards
         self.process = subprocess.Popen(
             [sys.executable, "-c", start, "run", "--no-browser", *arguments],
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
             text=True,
-            env={**os.environ, "PYTHONUNBUFFERED": "1", **kept, **environment},
+            env={**os.environ, "PYTHONUNBUFFERED": "1", "RATSLAM_RUNS": self._runs.name, **environment},
         )
         self.said: list[str] = []
         self.begun = ""  # what its session was when it began, as a hash
@@ -46,7 +45,7 @@ class Program:
         except BaseException:  # nobody else could stop it, after Ctrl+C neither
             self.process.kill()
             self.process.wait()
-            self._brains.cleanup()
+            self._runs.cleanup()
             raise
 
     def _begin(self) -> None:
@@ -83,7 +82,7 @@ class Program:
         finally:
             self.process.kill()
             self._listener.join()
-            self._brains.cleanup()
+            self._runs.cleanup()
         if self.process.returncode:
             print("".join(self.said[-40:]))  # pytest shows it beside the code that is not 0
         return self.process.returncode

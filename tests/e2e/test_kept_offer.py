@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-import time
+import shutil
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 from playwright.sync_api import Browser
 
-from app.kept_brains import About, keep
+from app.run_record.folder import STATE
 from app.session import Session
 from sim2d import load_world
 from tests.e2e.browser import calm, open_page, told, until
 from tests.e2e.layout import findings
 from tests.e2e.program import Program
+from tests.unit.app.run_record.kept import keep_ticks
 
 OFFERED = "() => document.getElementById('kept').checkVisibility()"
 GONE = "() => !document.getElementById('kept').checkVisibility()"
@@ -26,19 +27,24 @@ WITHIN = """() => { const box = document.getElementById('kept').getBoundingClien
 
 
 @pytest.fixture(scope="module")
-def known() -> Session:
-    session = Session(load_world("loop"), 7)
-    for _ in range(650):
-        session.tick()
-    return session
+def left(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Session]:
+    """A folder of runs with one that has ended, and its session."""
+    folder, session = tmp_path_factory.mktemp("kept") / "runs", Session(load_world("loop"), 7)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("RATSLAM_RUNS", str(folder))
+        keep_ticks(session, 650)
+    return folder, session
 
 
 @pytest.fixture
-def offering(known: Session, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Program]:
-    monkeypatch.setenv("RATSLAM_BRAINS", str(tmp_path))
-    about = About("loop", 7, known.time_s, len(known.brain.experience_map), time.time())
-    keep("earlier", known.brain, about)
-    program = Program("--port", "0", "--paused", RATSLAM_BRAINS=str(tmp_path))
+def known(left: tuple[Path, Session]) -> Session:
+    return left[1]
+
+
+@pytest.fixture
+def offering(left: tuple[Path, Session], tmp_path: Path) -> Iterator[Program]:
+    shutil.copytree(left[0], tmp_path / "runs")
+    program = Program("--port", "0", "--paused", RATSLAM_RUNS=str(tmp_path / "runs"))
     yield program
     assert program.stop() == 0
 
@@ -70,7 +76,8 @@ def test_the_offer_is_seen_and_taken(offering: Program, browser: Browser, known:
 
 @pytest.mark.long
 def test_a_broken_one_is_told_of_and_not_now_stays_gone(offering: Program, browser: Browser, tmp_path: Path) -> None:
-    (tmp_path / "earlier.npz").write_bytes(b"PK")
+    (state,) = tmp_path.glob(f"runs/*/{STATE}")
+    state.write_bytes(b"PK")
     with open_page(browser, offering.url, refused=True, stage=False) as page:
         until(page, OFFERED)
         page.click("#kept-wake")

@@ -19,12 +19,14 @@ from app.config import Config
 from app.engine.engine import Engine
 from app.engine.pace import Pace
 from app.engine.watchdog import Watchdog
-from app.runs.folder import BRAIN, LINES, STATE
-from app.runs.header import beginning_of, edit_of, header_of, pulse_of, written
-from app.runs.journal import Journal, LineBook
-from app.runs.keeper import RunKeeper
-from app.runs.replay import replay, resumed
-from app.runs.run_file import open_run
+from app.run_record.folder import BRAIN, LINES, STATE
+from app.run_record.header import beginning_of, header_of, written
+from app.run_record.order_rows import edit_of
+from app.run_record.reader import open_run
+from app.run_record.record import tick_checksum
+from app.run_record.resume import replayed, resumed
+from app.run_record.run_log import LogFile, RunLog
+from app.run_record.writer import RunKeeper
 from app.session import Session
 from app.session_snapshot import read_session, take_session
 from disk import State, encode, write_state
@@ -63,18 +65,18 @@ def _kept(with_brain: bool) -> Files:
         before.tick()
     with tempfile.TemporaryDirectory() as home:
         folder, brain = Path(home) / "run", None
-        journal = Journal(folder)
+        log_file = LogFile(folder)
         if with_brain:
             with (folder / BRAIN).open("wb") as file:
                 write_state(encode(before.brain), file)
             brain = read_brain(io.BytesIO((folder / BRAIN).read_bytes()))
         session = Session(load_world("loop"), 2, Config(), brain)
-        journal.add(written(header_of(beginning_of(session, brain=with_brain))))
-        lines = LineBook(journal, session.source.world_texts[0], 0)
+        log_file.add(written(header_of(beginning_of(session, brain=brain))))
+        lines = RunLog(log_file, session.source.world_texts[0])
         session.on_order = lines.order
         for tick in range(1, TICKS + 1):
             session.tick()
-            lines.tick(tick, pulse_of(session))
+            lines.tick(tick, tick_checksum(session))
             if tick in (20, 35):
                 lines.hash(tick, session.state_hash(), len(session.brain.experience_map))
             if tick == 20:
@@ -82,7 +84,7 @@ def _kept(with_brain: bool) -> Files:
                     write_state(take_session(session), file)
             ORDERS.get(tick, lambda _: None)(session)
         lines.flush()
-        journal.close()
+        log_file.close()
         return {path.name: path.read_bytes() for path in folder.iterdir()}
 
 
@@ -175,7 +177,7 @@ def use(files: Files) -> str:
         run = open_run(folder)
         refused: ValueError | None = None
         try:
-            replay(run)
+            replayed(run)
         except ValueError as error:
             refused = error
             _require_sentence(error)
@@ -212,7 +214,7 @@ def _go_on(folder: Path, session: Session) -> None:
     finally:
         keeper.stop()
     again = open_run(folder)
-    assert complaints or engine.fault is not None or again.last_tick == kept.last_tick + 3, again.last_tick
+    assert complaints or engine.fault is not None or again.tick == kept.tick + 3, again.tick
     for words in complaints:
         _require_sentence(ValueError(words))
 

@@ -143,8 +143,7 @@ class Made:
         self.home, self.work = folder / "home", folder / "work"
         kept = self.home / ".ratslam"
         self.work.mkdir(parents=True)
-        program = Program("--port", "0", "--seed", "5", "--speed", "0", RATSLAM_RUNS=str(kept / "runs"),
-                          RATSLAM_BRAINS=str(kept / "brains"))  # fmt: skip
+        program = Program("--port", "0", "--seed", "5", "--speed", "0", RATSLAM_RUNS=str(kept / "runs"))
         try:
             program.wait(lambda state: state["time_s"] > 65)  # a younger brain is not kept
             moment = program.post("situation", {})

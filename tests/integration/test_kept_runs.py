@@ -10,9 +10,9 @@ from pathlib import Path
 
 import pytest
 
-from app.runs.folder import LINES, all_runs
-from app.runs.replay import replay
-from app.runs.run_file import open_run
+from app.run_record.folder import LINES, all_runs
+from app.run_record.reader import open_run
+from app.run_record.resume import replayed
 from tests.e2e.program import Program
 from tests.patience import PATIENCE_S, until
 
@@ -30,13 +30,13 @@ def test_after_a_kill_the_run_is_offered_and_goes_on(home: str) -> None:
         program.command("step", ticks=120)
         program.command("kidnap")
         program.command("step", ticks=7)
-        until(lambda: all_runs() and open_run("last").last_tick >= 127, "tick 127 in its file")
+        until(lambda: all_runs() and open_run("last").tick >= 127, "tick 127 in its file")
     finally:
         program.process.kill()
         program.stop()
     run = open_run("last")
-    assert (run.last_tick, [order.name for order in run.orders], run.end) == (127, ["kidnap"], "")
-    there = replay(run)
+    assert (run.tick, [order.name for order in run.orders], run.end) == (127, ["kidnap"], "")
+    there = replayed(run)
     for resume in (("--resume", run.name), ()):
         program = Program("--port", "0", "--paused", *resume, RATSLAM_RUNS=home)
         try:
@@ -53,14 +53,14 @@ def test_after_a_kill_the_run_is_offered_and_goes_on(home: str) -> None:
             for _ in range(5):
                 there.tick()
             if resume:  # it is killed, too, but only once its ticks are kept
-                until(lambda: open_run(run.name).last_tick >= 132, "tick 132 in its file")
+                until(lambda: open_run(run.name).tick >= 132, "tick 132 in its file")
         finally:
             if resume:
                 program.process.kill()
             program.stop()
     whole = open_run(run.name)
-    assert (whole.last_tick, len(whole.again), whole.end, whole.damage) == (137, 2, "the program ended", "")
-    assert replay(whole).state_hash() == there.state_hash()
+    assert (whole.tick, len(whole.again), whole.end, whole.damage) == (137, 2, "the program ended", "")
+    assert replayed(whole).state_hash() == there.state_hash()
 
 
 @pytest.mark.long
@@ -72,4 +72,4 @@ def test_killed_at_any_moment_it_opens_and_comes_out_the_same(home: str) -> None
     if all_runs():  # else its file was not begun
         run = open_run("last")
         assert (run.folder / LINES).stat().st_size >= run.size
-        assert replay(run).tick_count == run.last_tick
+        assert replayed(run).tick_count == run.tick

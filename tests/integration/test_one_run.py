@@ -17,15 +17,15 @@ from websockets.sync.client import connect
 
 from app.config import Config
 from app.engine_thread import EngineThread
-from app.order_book import Order
-from app.runs.header import beginning_of, header_of
-from app.runs.keeper import RunKeeper
-from app.runs.replay import replay
-from app.runs.run_file import open_run
+from app.orders import Order
+from app.run_record.header import beginning_of, header_of
+from app.run_record.link import file_of, link_of, read_situation
+from app.run_record.reader import open_run
+from app.run_record.resume import replayed
+from app.run_record.situation import Situation
+from app.run_record.writer import RunKeeper
 from app.session import Session
 from app.session_snapshot import load_session, save_session
-from app.situations import Situation
-from app.situations.document import file_of, link_of, read_situation
 from app.views.history import History
 from app.views.inspection import inspect
 from app.views.office import movements_of
@@ -208,13 +208,13 @@ def test_replayed_from_its_file(expected: str, tmp_path: Path, monkeypatch: pyte
     session, complaints = Session(load_world("living"), SEED), list[str]()
     keeper = RunKeeper(complaints.append)
     keeper.start()
-    book = keeper.book(session, beginning_of(session))
-    session.on_order = book.order
-    keeper.begin(book)
-    play_session(session, book.tick)
+    feed = keeper.feed(session, beginning_of(session))
+    session.on_order = feed.order
+    keeper.begin(feed)
+    play_session(session, feed.tick)
     keeper.stop()
     assert complaints == []
-    assert replay(open_run("last")).state_hash() == expected
+    assert replayed(open_run("last")).state_hash() == expected
 
 
 @pytest.mark.parametrize("written", [lambda situation: link_of(situation)[0], file_of], ids=["link", "file"])

@@ -29,7 +29,6 @@ const python = spawn(
       ...process.env,
       PYTHONUNBUFFERED: "1",
       RATSLAM_WORLDS: own,
-      RATSLAM_BRAINS: join(place, "brains"),
       RATSLAM_RUNS: join(place, "runs"),
       RATSLAM_EXPERIMENTS: join(place, "experiments.sqlite"),
     },

@@ -16,7 +16,7 @@ import pytest
 from app.config import Config, from_toml
 from disk import kernel_cache
 from tests.recordings import image_folder
-from tests.unit.app.runs.kept import keep_one
+from tests.unit.app.run_record.kept import keep_one
 
 pytestmark = pytest.mark.slow
 

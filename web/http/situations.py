@@ -72,7 +72,7 @@ class HasMoment(Protocol):
 class Situations(Protocol):
     """The program's side. Both take a while."""
 
-    def made(self, led_here: object, look: Look) -> Made: ...
+    def made(self, spec: object, look: Look) -> Made: ...
     def read(self, text: str) -> HasMoment: ...
 
 
@@ -89,9 +89,9 @@ def add_situations(app: FastAPI, situations: Situations | None, cameras: Cameras
         asked = await checked_body(request, AskMoment, limits)
         look = Look(plate=asked.plate, tab=asked.tab, camera=_camera_of(cameras, asked.page))
         async with one_at_a_time:
-            led_here = (await told(submit, ReadSituation(), READ_TIMEOUT_S)).result
+            spec = (await told(submit, ReadSituation(), READ_TIMEOUT_S)).result
             try:
-                made = await asyncio.to_thread(situations.made, led_here, look)
+                made = await asyncio.to_thread(situations.made, spec, look)
             except OSError as error:
                 reason = f"the brain that the run began with cannot be read: {error.strerror or error}"
                 raise Malformed([wrong(None, None, reason)]) from None

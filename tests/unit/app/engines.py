@@ -9,7 +9,7 @@ from app.config import Config
 from app.engine.engine import Engine
 from app.engine.pace import Pace
 from app.engine.watchdog import Watchdog
-from app.runs.keeper import RunKeeper
+from app.run_record.writer import RunKeeper
 from sim2d import World
 from web import messages as m
 

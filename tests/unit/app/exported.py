@@ -27,7 +27,7 @@ class AgainAndAgain:
     def length_s(self) -> float:
         return self.last_tick / 10
 
-    def play(self, until: int | None = None) -> Iterator[Session]:
+    def replay(self, until: int | None = None) -> Iterator[Session]:
         session = Session(self.world, self.seed, self.config)
         yield session
         while session.tick_count < (self.last_tick if until is None else until):

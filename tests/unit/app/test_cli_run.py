@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 
-from app import engine_thread, kept_brains
+from app import engine_thread
 from app.cli import beginnings, serving
 from app.cli import command_line as cli
 from app.cli.run import run_with_trial
@@ -20,8 +20,8 @@ from app.cli.serving import Serving
 from app.config import Config
 from app.engine.engine import Engine
 from app.protocol.experiment import find_experiment
-from app.runs.folder import runs_folder
-from app.time_machine import PastRoom
+from app.run_record.folder import runs_folder
+from app.run_record.keyframes import PastRoom
 from sim2d import World
 from tests.patience import PATIENCE_S
 from web.http import server
@@ -48,8 +48,6 @@ class Doubles:
         monkeypatch.setattr("app.startup.compiling.Compiling", partial(CompilingDouble, self))
         monkeypatch.setattr(engine_thread, "EngineThread", partial(EngineDouble, self))
         monkeypatch.setattr(server, "Dashboard", partial(DashboardDouble, self))
-        monkeypatch.setattr(kept_brains.BrainKeeper, "start", lambda _self: None)
-        monkeypatch.setattr(kept_brains.BrainKeeper, "stop", lambda _self: None)
         monkeypatch.setattr(viewer, "Viewers", lambda *_: "viewers")
         monkeypatch.setattr("webbrowser.open", lambda url: self.log.append(f"opens {url}"))
 

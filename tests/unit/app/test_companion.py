@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from app import session_laws
 from app.config import Config, Value
 from app.config.pairs import pairs_beside
-from app.order_book import Order, carry_out
+from app.orders import Order, carry_out
 from app.recordings.playing import Player
 from app.session import Session, played_session
 from app.session_snapshot import restore_session, take_session

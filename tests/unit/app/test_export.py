@@ -45,7 +45,7 @@ def run() -> AgainAndAgain:
 
 @pytest.fixture(scope="module")
 def at_the_end(run: AgainAndAgain) -> Session:
-    *_, session = run.play()
+    *_, session = run.replay()
     return session
 
 
@@ -112,7 +112,7 @@ def test_the_table_has_a_row_for_each_tick(run: AgainAndAgain, at_the_end: Sessi
     with written(run, "csv", tmp_path).open(encoding="utf-8", newline="") as text:
         rows = list(csv.DictReader(text))
     assert [int(row["tick"]) for row in rows] == list(range(TICKS + 1))
-    for session, row in zip(run.play(20), rows, strict=False):
+    for session, row in zip(run.replay(20), rows, strict=False):
         robot = session.estimate.pose_map_robot
         assert (float(row["x"]), float(row["y"]), float(row["heading_rad"])) == (robot.x, robot.y, robot.heading_rad)
         assert (float(row["speed"]), float(row["yaw_rate"])) == (session.odometry.speed, session.odometry.yaw_rate)
@@ -237,7 +237,7 @@ def test_a_brain_that_is_given_the_recording_comes_to_the_same(drive: AgainAndAg
         assert behaviour is not None
         told = Odometry(odom.twist.twist.linear.x, odom.twist.twist.angular.z, dt.data)
         brain.step(picture, told, behaviour=behaviour.data, ranges_m=np.array(sonars.data))
-    *_, session = drive.play()
+    *_, session = drive.replay()
     assert brain.digest() == session.brain.digest()
 
 
@@ -249,7 +249,7 @@ def test_what_is_in_it(drive: AgainAndAgain, bag: Path) -> None:
     assert set(found) == of_each_tick | of_each_change | {"/map", "/topological_map", "/events"}
     views, view = dict(found["/view_template"]), None
     assert any(event.data.startswith("kidnap: ") for _, event in found["/events"])
-    for tick, session in enumerate(drive.play()):
+    for tick, session in enumerate(drive.replay()):
         at_ns, truth = found["/truth"][tick]
         assert at_ns == round(session.time_s * 1e9) == truth.header.stamp.sec * 10**9 + truth.header.stamp.nanosec
         true, robot = session.simulator.truth, session.estimate.pose_map_robot
@@ -265,7 +265,7 @@ def test_what_is_in_it(drive: AgainAndAgain, bag: Path) -> None:
         x, y = moved.translation.x, moved.translation.y
         assert drift.translation.x + math.cos(turn) * x - math.sin(turn) * y == pytest.approx(robot.x)
         assert drift.translation.y + math.sin(turn) * x + math.cos(turn) * y == pytest.approx(robot.y)
-    *_, session = drive.play()
+    *_, session = drive.replay()
     links, places = found["/map"][-1][1].markers
     assert (len(places.points), len(links.points)) == (
         len(session.brain.experience_map), 2 * session.brain.experience_map.link_count
@@ -274,7 +274,7 @@ def test_what_is_in_it(drive: AgainAndAgain, bag: Path) -> None:
 
 def test_the_sonars_stand_where_they_point(drive: AgainAndAgain, bag: Path) -> None:
     scan = messages(bag, "/scan")["/scan"][0][1]
-    session = next(drive.play())
+    session = next(drive.replay())
     for angle, length in zip(SONAR_ANGLES_RAD, session.frame.ranges_m, strict=True):
         beam = (angle - scan.angle_min) / scan.angle_increment
         assert beam == pytest.approx(round(beam), abs=1e-5)
@@ -286,7 +286,7 @@ def test_the_sonars_stand_where_they_point(drive: AgainAndAgain, bag: Path) -> N
 def test_a_laser_is_the_scan(fan_rad: float, tmp_path: Path) -> None:
     config = Config().with_values({"robot.laser_beams": 24, "robot.laser_fov_rad": fan_rad})
     run = AgainAndAgain(3, config=config)
-    session, (_, scan) = next(run.play()), messages(written(run, "mcap", tmp_path), "/scan")["/scan"][0]
+    session, (_, scan) = next(run.replay()), messages(written(run, "mcap", tmp_path), "/scan")["/scan"][0]
     np.testing.assert_array_equal(np.array(scan.ranges, np.float32), session.frame.laser_m[::-1])
     assert scan.angle_max == pytest.approx(fan_rad / 2, rel=1e-6)
 

@@ -36,7 +36,7 @@ def folder(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Path:
             raise ValueError(f"there is no run {name!r}")
         return AgainAndAgain(30)
 
-    monkeypatch.setattr("app.runs.run_file.open_run", open_run)
+    monkeypatch.setattr("app.run_record.reader.open_run", open_run)
     monkeypatch.chdir(tmp_path)
     return tmp_path
 

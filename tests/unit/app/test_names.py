@@ -17,14 +17,13 @@ from app.experiments.figures import draw
 from app.experiments.figures.canvas import svg_of
 from app.experiments.report import check_drawing
 from app.experiments.summary import table_of
-from app.order_book import Order
+from app.orders import Order, check_order
 from app.protocol.experiment import Level, Score, read_experiment
 from app.protocol.lesson import check_lesson, read_lesson
-from app.runs.bookmarks import Bookmarks
-from app.runs.header import Beginning, header_of, read_header, written
-from app.runs.order_check import check_order
-from app.situations.page import python_lines
-from app.situations.situation import Situation
+from app.run_record.bookmarks import Bookmarks
+from app.run_record.header import Beginning, header_of, read_header, written
+from app.run_record.link import python_lines
+from app.run_record.situation import Situation
 from app.startup.ending import ended
 from disk.words import plain, shown
 from sim2d import load_world, world_from_json, world_to_json

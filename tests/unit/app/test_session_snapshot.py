@@ -17,9 +17,10 @@ from hypothesis import strategies as st
 
 from app.protocol.steps import spread_goals
 from app.session import Session
-from app.session_snapshot import load_session, read_session, restore_session, save_session, take_session
-from disk import State, write_state
+from app.session_snapshot import load_its_brain, load_session, read_session, restore_session, save_session, take_session
+from disk import State, encode, write_state
 from disk.state_codec import LONG
+from disk.state_file import save_state
 from ratslam_core import save_brain
 from sim2d import Box, Lamp, load_world
 
@@ -233,6 +234,18 @@ def test_a_session_that_breaks_a_law_is_refused_by_it(subtests: pytest.Subtests)
 
 def test_a_world_that_is_none_is_refused() -> None:
     taken = take_session(driven("office", 2))
-    text = taken.arrays[0].tobytes().replace(b'"to"', b'"to": [1, 1], "tO"', 1)
+    at = next(k for k, array in enumerate(taken.arrays) if b'"to"' in array.tobytes())
+    text = taken.arrays[at].tobytes().replace(b'"to"', b'"to": [1, 1], "tO"', 1)
     with pytest.raises(ValueError, match=r"its world: walls\[0\]\.tO: got .*; unknown key"):
-        restore_session(State(taken.tree, [np.frombuffer(text, np.uint8), *taken.arrays[1:]]))
+        restore_session(State(taken.tree, [*taken.arrays[:at], np.frombuffer(text, np.uint8), *taken.arrays[at + 1 :]]))
+
+
+def test_a_state_of_an_earlier_program_has_no_brain_in_front_and_is_read(tmp_path: Path) -> None:
+    session = driven("office", 2)
+    texts = [np.frombuffer(text.encode(), np.uint8) for text in session.source.world_texts]
+    save_state(encode((*texts, session)), tmp_path / "state.npz")
+    assert load_session(tmp_path / "state.npz").state_hash() == session.state_hash()
+    with pytest.raises(
+        ValueError, match="state.npz is no brain that can be taken back: a snapshot must hold a RatSlam"
+    ):
+        load_its_brain(tmp_path / "state.npz")

@@ -24,8 +24,8 @@ class Moment:
 class FewSituations:
     """The text "good" is a situation."""
 
-    def made(self, led_here: object, look: Look) -> Made:
-        if led_here == "unreadable":
+    def made(self, spec: object, look: Look) -> Made:
+        if spec == "unreadable":
             raise OSError(2, "No such file")
         return Made(
             link="run=x", why="", name="a.situation.json", file=look.model_dump_json(), python="", tick=12, time_s=1.2,

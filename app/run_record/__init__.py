@@ -1,0 +1,1 @@
+"""Runs as data, and made again from that: runs that keep themselves, situations, branches and moments of the past."""

@@ -1,1 +1,0 @@
-"""Runs that keep themselves: on disk, as their beginning and the orders that were given."""
