@@ -203,7 +203,7 @@ class Session:
     def set_goal(self, x: float, y: float) -> int:
         """Go to the place (x, y), metres in the map's frame: to the quickest of all experiences that stand for it. Returns
         the one nearest to it."""
-        return self.go_to_place_of(nearest_to(self.brain.experience_map, x, y, self.pilot.params))
+        return self.go_to_place_of(nearest_to(self.brain.experience_map, x, y))
 
     @order
     def go_to_place_of(self, experience: int) -> int:

@@ -7,29 +7,32 @@ from __future__ import annotations
 
 import json
 from dataclasses import Field
+from itertools import groupby
 from typing import Any
 
 from app.config.tree import Config, Value
 from ratslam_core.params.additions import ADDITIONS
 
+_HEAD = ["", "| name | symbol | default | range | unit | meaning | source |", "|---|---|---|---|---|---|---|"]
+
 
 def to_markdown(config: Config) -> str:
-    """All parameters, one table for each section; this is docs/parameters.md."""
-    lines = [
+    """The dozen that a lecture turns, then all parameters, one table for each section; this is docs/parameters.md."""
+    items = list(config.items())
+    dozen = [_row(name, item, value) for name, item, value in items if item.metadata["lecture"]]
+    text = [
         "# Parameters",
         "",
-        "Made by `ratslam config --table`. ↻: takes effect at the next reset. Sources: A = ACRA 2004, ",
+        f"Made by `ratslam config --table`: {len(items)}. What nobody tunes is a constant beside its use, with its reason.",
+        "↻: takes effect at the next reset. Sources: A = ACRA 2004, B = ACRA 2005, C = IROS 2005, D = ACRA 2006.",
+        "",
+        "## For a lecture",
+        *_HEAD,
+        *dozen,
     ]
-    lines[-1] += "B = ACRA 2005, C = IROS 2005, D = ACRA 2006."
-    section = ""
-    for name, item, value in config.items():
-        group, key = name.split(".")
-        if group != section:
-            section = group
-            lines += ["", f"## {section}", "", "| name | symbol | default | range | unit | meaning | source |"]
-            lines += ["|---|---|---|---|---|---|---|"]
-        lines.append(_row(key, item, value))
-    return "\n".join(lines) + "\n"
+    for section, rows in groupby(items, lambda row: row[0].split(".")[0]):
+        text += ["", f"## {section}", *_HEAD, *(_row(name.split(".")[1], item, value) for name, item, value in rows)]
+    return "\n".join(text) + "\n"
 
 
 def _row(key: str, item: Field[Any], value: Value) -> str:

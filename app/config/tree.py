@@ -10,6 +10,7 @@ from typing import Any
 from app.pilot.params import PilotParams
 from disk import kind
 from ratslam_core.params import (
+    COLUMNS,
     EvidenceParams,
     ExperienceMapParams,
     GoalMemoryParams,
@@ -19,7 +20,6 @@ from ratslam_core.params import (
     PoseCellParams,
     RatSlamParams,
 )
-from ratslam_core.params.local_view import COLUMNS
 from sim2d import OfficeParams, SimParams
 
 Value = float | int | bool | str

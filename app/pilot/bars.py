@@ -15,9 +15,14 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from app.pilot.params import RouteParams
+from app.pilot.params import PilotParams
 from disk import kind
 from ratslam_core import Pose2
+
+BAR_AHEAD_M = 0.4  # how far ahead of the robot a bar lies
+BAR_M, WIDEST_BAR_M = 0.6, 1.4  # its width; each time the robot fails there again, as much wider, up to this
+LONGEST_BAR_S = 90.0  # longest time in which a bar fades
+BAR_DELAY_S = 30.0  # of each way across a new bar, times how often the robot failed there
 
 _Array = NDArray[np.float64]
 
@@ -64,20 +69,20 @@ class Bars:
         if any(bar.left_s <= 0 < bar.lasts_s for bar in self._bars):
             self._bars = [bar for bar in self._bars if bar.left_s > 0 or not bar.lasts_s]
 
-    def add(self, robot: Pose2, bearing: float, p: RouteParams) -> None:
+    def add(self, robot: Pose2, bearing: float, p: PilotParams) -> None:
         """The robot could not get on in this direction (rad, robot's frame)."""
-        ends = bar_ahead(robot, bearing, p.bar_m, p)
+        ends = bar_ahead(robot, bearing, BAR_M)
         middle = ends.mean(axis=0)
         for old in self._bars:
-            if math.hypot(*(old.ends.mean(axis=0) - middle)) < p.bar_m:
+            if math.hypot(*(old.ends.mean(axis=0) - middle)) < BAR_M:
                 failures = old.failures + 1
-                old.ends = bar_ahead(robot, bearing, min(failures * p.bar_m, p.widest_bar_m), p)
-                old.failures, old.lasts_s = failures, min(2 * old.lasts_s, p.longest_bar_s)
+                old.ends = bar_ahead(robot, bearing, min(failures * BAR_M, WIDEST_BAR_M))
+                old.failures, old.lasts_s = failures, min(2 * old.lasts_s, LONGEST_BAR_S)
                 old.left_s = old.lasts_s
                 return
         self._bars.append(Bar(ends, p.bar_fade_s, p.bar_fade_s, 1))
 
-    def delays(self, ends: NDArray[np.int64], places: _Array, p: RouteParams) -> _Array | None:
+    def delays(self, ends: NDArray[np.int64], places: _Array) -> _Array | None:
         """Seconds, (m,), by which the bars delay links between experiences `ends` (m, 2) at `places` (n, >= 2).
 
         None without a bar.
@@ -86,7 +91,7 @@ class Bars:
             return None
         out = np.zeros(len(ends))
         for bar in self._bars:
-            _delay(out, ends, places, bar.ends, p.bar_delay_s * bar.strength)
+            _delay(out, ends, places, bar.ends, BAR_DELAY_S * bar.strength)
         return out
 
     def between(self, x: float, y: float, places: _Array) -> NDArray[np.bool_]:
@@ -97,9 +102,9 @@ class Bars:
         return behind
 
 
-def bar_ahead(robot: Pose2, bearing: float, width: float, p: RouteParams) -> _Array:
+def bar_ahead(robot: Pose2, bearing: float, width: float) -> _Array:
     """The two ends (2, 2), map frame, of a bar that lies across the way in this direction (rad, robot's frame)."""
-    ahead = robot.compose(Pose2(0.0, 0.0, bearing)).compose(Pose2(p.bar_ahead_m, 0.0, 0.0))
+    ahead = robot.compose(Pose2(0.0, 0.0, bearing)).compose(Pose2(BAR_AHEAD_M, 0.0, 0.0))
     left, right = (ahead.compose(Pose2(0.0, side * width / 2, 0.0)) for side in (1, -1))
     return np.array([(left.x, left.y), (right.x, right.y)])
 

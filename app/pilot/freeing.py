@@ -10,9 +10,19 @@ import math
 
 import numpy as np
 
-from app.pilot.params import FreeingParams, PilotParams
+from app.pilot.params import PilotParams
 from disk import kind
 from ratslam_core import Odometry
+
+BUMPED_S = 1.0  # without progress for this long, a robot that has bumped into something frees itself
+SOMEWHERE_M, TURNED_RAD = 0.4, 1.5  # progress is to come this far, by odometry, or to turn this far ...
+MOST_TURNS = 2  # ... but turns count no more often than this in one place
+GRIP_YAW_RATE = 0.2  # rad/s; turns faster than this are used to measure how slow the floor is
+LEAST_GRIP = 0.2  # on the slowest floor, time without progress runs at this share
+GRIP_S = 2.0  # time constant of measuring the floor
+BACK_OFF_S, BACK_OFF_SPEED = 1.0, 0.2  # how long, and at how many m/s, the robot backs off ...
+FREE_TURN_S = 1.5  # ... and how long it turns then ...
+FREE_TURN_SHARE = 0.5  # ... at this share of the turn rate or more, to the left or right
 
 
 @kind("freeing/1")
@@ -36,38 +46,38 @@ class Freeing:
     def step(self, bumped: bool, odometry: Odometry, asked: float, p: PilotParams) -> tuple[float, float] | None:
         """The drive while the robot frees itself, else None. asked: yaw rate (rad/s) of the last drive."""
         self.has_begun = False
-        self._move_on(odometry, asked, p)
+        self._move_on(odometry, asked)
         if self._left_s > 0:
             self._left_s -= odometry.dt
-            if self._left_s < p.free_turn_s:
+            if self._left_s < FREE_TURN_S:
                 self._drive = (0.0, self._drive[1])
             return self._drive
-        if self._still_s > p.stuck_s or (bumped and self._still_s > p.bumped_s):
+        if self._still_s > p.stuck_s or (bumped and self._still_s > BUMPED_S):
             self.begin(p)
             return self._drive
         return None
 
-    def _move_on(self, odometry: Odometry, asked: float, p: FreeingParams) -> None:
+    def _move_on(self, odometry: Odometry, asked: float) -> None:
         """Update the place by odometry, the grip of the floor, and the time without progress."""
         x, y, heading = self._place.tolist()
         heading += odometry.yaw_rate * odometry.dt
         step = odometry.speed * odometry.dt
         self._place[:] = x + step * math.cos(heading), y + step * math.sin(heading), heading
-        if abs(asked) > p.grip_yaw_rate and odometry.yaw_rate != 0:  # wheels that do not turn are stuck, not slow
-            share = min(1.0, max(p.least_grip, odometry.yaw_rate / asked))
-            self._grip += min(1.0, odometry.dt / p.grip_s) * (share - self._grip)
+        if abs(asked) > GRIP_YAW_RATE and odometry.yaw_rate != 0:  # wheels that do not turn are stuck, not slow
+            share = min(1.0, max(LEAST_GRIP, odometry.yaw_rate / asked))
+            self._grip += min(1.0, odometry.dt / GRIP_S) * (share - self._grip)
         self._still_s += odometry.dt * self._grip
-        if math.hypot(*self._place[:2].tolist()) > p.somewhere_m:
+        if math.hypot(*self._place[:2].tolist()) > SOMEWHERE_M:
             self._place[:2] = 0.0
             self._still_s, self._looked_at, self._turns = 0.0, heading, 0
-        elif abs(heading - self._looked_at) > p.turned_rad and self._turns < p.most_turns:
+        elif abs(heading - self._looked_at) > TURNED_RAD and self._turns < MOST_TURNS:
             self._still_s, self._looked_at, self._turns = 0.0, heading, self._turns + 1
 
     def begin(self, p: PilotParams) -> None:
         """Back off and turn, from the next tick on."""
-        share = float(self._rng.uniform(p.free_turn_share, 1.0))
+        share = float(self._rng.uniform(FREE_TURN_SHARE, 1.0))
         turn = share * math.copysign(p.turn_rate, self._rng.uniform(-1, 1))
-        self._left_s, self._drive = p.free_turn_s + p.back_off_s, (-p.back_off_speed, turn)
+        self._left_s, self._drive = FREE_TURN_S + BACK_OFF_S, (-BACK_OFF_SPEED, turn)
         self._still_s = 0.0
         self._place[:2] = 0.0
         self.has_begun = True

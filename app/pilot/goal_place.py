@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.pilot.params import RouteParams
+from app.pilot.params import PilotParams
 from ratslam_core import ExperienceMap
 
+GOAL_REACH_M = 1.5  # a goal farther than this from every experience is refused
 
-def nearest_to(experiences: ExperienceMap, x: float, y: float, p: RouteParams) -> int:
+
+def nearest_to(experiences: ExperienceMap, x: float, y: float) -> int:
     """The experience nearest to (x, y), m, map frame. ValueError off the map."""
     poses = experiences.poses
     away = np.hypot(poses[:, 0] - x, poses[:, 1] - y)
     nearest = int(np.argmin(away))
-    reach = p.goal_reach_m
+    reach = GOAL_REACH_M
     if not away[nearest] <= reach:  # written so that NaN is refused, too
         raise ValueError(
             f"({x:g}, {y:g}) is off the map: the nearest experience is {away[nearest]:.1f} m away, "
@@ -22,7 +24,7 @@ def nearest_to(experiences: ExperienceMap, x: float, y: float, p: RouteParams) -
     return nearest
 
 
-def of_its_place(experiences: ExperienceMap, experience: int, p: RouteParams) -> tuple[int, ...]:
+def of_its_place(experiences: ExperienceMap, experience: int, p: PilotParams) -> tuple[int, ...]:
     """The experiences that stand for the same place as this one, which comes first, the nearest before the others.
 
     A place has several, since the robot made one for each way that it faced and for each way that it came. They are those

@@ -10,9 +10,18 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from app.pilot.params import SeekingParams
 from disk import kind
 from ratslam_core import ExperienceMap
+
+OLD_AFTER_S = 60.0  # an experience is old ground when it was made so long ago
+PLACE_REACH_M = 1.5  # a visit to a place counts for all experiences this near
+OPENING_M = 2.0  # sonars that see as far as this see open floor ...
+OPENING_GAP_M, OPENING_MOST_M = 0.7, 2.5  # ... whose place is so much before the echo, and at most so far away
+OPENING_BEAMS = 3  # must have seen an opening
+OPENING_AGAIN_S = 120.0  # one that has been tried is tried again after this time, after twice as long the next time
+THIN_M = 0.8  # the map is thin where no experience is about this near
+FAR_M = 2.8  # an opening is far when it is so far from all experiences ...
+FAR_FINE = 4  # ... what is near one is marked in cells of this part of that distance
 
 _Array = NDArray[np.float64]
 
@@ -40,9 +49,7 @@ class KnownGround:
     def made_s(self) -> _Array:
         return self._made_s[: self.count]
 
-    def step(
-        self, experiences: ExperienceMap, ranges_m: NDArray[np.float32], way_m: float, dt: float, p: SeekingParams
-    ) -> None:
+    def step(self, experiences: ExperienceMap, ranges_m: NDArray[np.float32], way_m: float, dt: float) -> None:
         """The robot drove `way_m` and is at the active experience."""
         self.now_s += dt
         self.new_m += way_m
@@ -58,7 +65,7 @@ class KnownGround:
             self._seen_m[rows] = 0.0
             self._seen_m[experiences.active] = ranges_m
             self.count = len(experiences)
-        elif self.now_s - self._made_s[experiences.active] > p.old_after_s:
+        elif self.now_s - self._made_s[experiences.active] > OLD_AFTER_S:
             self.new_m = 0.0
         self._last_s[experiences.active] = self.now_s
 
@@ -71,35 +78,35 @@ class KnownGround:
             more = np.zeros((2 * count - len(array), *array.shape[1:]), array.dtype)
             setattr(self, name, np.concatenate([array, more]))
 
-    def been_at(self, x: float, y: float, poses: _Array, p: SeekingParams) -> None:
+    def been_at(self, x: float, y: float, poses: _Array) -> None:
         """The robot was at this place of the map, whichever way it faced."""
-        near = np.hypot(poses[: self.count, 0] - x, poses[: self.count, 1] - y) < p.place_reach_m
+        near = np.hypot(poses[: self.count, 0] - x, poses[: self.count, 1] - y) < PLACE_REACH_M
         self.last_s[near] = self.now_s
 
-    def tried(self, experience: int, x: float, y: float, poses: _Array, p: SeekingParams) -> None:
+    def tried(self, experience: int, x: float, y: float, poses: _Array) -> None:
         """The robot tried to drive into an opening; m, in the frame of the experience.
 
         It may have been turned away by somebody who stood there, so it may try again, after twice as long each time.
         """
         here = placed([(experience, x, y)], poses)
-        before = np.hypot(*(placed([done[:3] for done in self._done], poses) - here).T) < p.thin_m
-        self._done.append((experience, x, y, self.now_s + p.opening_again_s * 2.0 ** int(before.sum())))
+        before = np.hypot(*(placed([done[:3] for done in self._done], poses) - here).T) < THIN_M
+        self._done.append((experience, x, y, self.now_s + OPENING_AGAIN_S * 2.0 ** int(before.sum())))
 
-    def openings(self, experiences: ExperienceMap, p: SeekingParams, least: int) -> tuple[NDArray[np.int64], _Array]:
+    def openings(self, experiences: ExperienceMap, least: int) -> tuple[NDArray[np.int64], _Array]:
         """Experiences (k,) and the places (k, 2), m, map frame, that were seen from there and never driven on.
 
         least: so many beams must have seen an opening; a single one may be a false echo. Only what lies on the robot's own
         island counts: where the others lie to it is unknown.
         """
-        rows, beams = np.nonzero(self._seen_m[: self.count] >= p.opening_m)
-        away = np.minimum(self._seen_m[rows, beams] - p.opening_gap_m, p.opening_most_m)
-        return self._thin(experiences, rows, beams, away, p.thin_m, 1, least)
+        rows, beams = np.nonzero(self._seen_m[: self.count] >= OPENING_M)
+        away = np.minimum(self._seen_m[rows, beams] - OPENING_GAP_M, OPENING_MOST_M)
+        return self._thin(experiences, rows, beams, away, THIN_M, 1, least)
 
-    def far_openings(self, experiences: ExperienceMap, p: SeekingParams) -> tuple[NDArray[np.int64], _Array]:
+    def far_openings(self, experiences: ExperienceMap) -> tuple[NDArray[np.int64], _Array]:
         """The same, of places that lie far from all experiences: there a new street or hall begins."""
-        rows, beams = np.nonzero(self._seen_m[: self.count] >= p.far_m + p.opening_gap_m)
-        away = self._seen_m[rows, beams].astype(np.float64) - p.opening_gap_m
-        return self._thin(experiences, rows, beams, away, p.far_m, p.far_fine, p.opening_beams)
+        rows, beams = np.nonzero(self._seen_m[: self.count] >= FAR_M + OPENING_GAP_M)
+        away = self._seen_m[rows, beams].astype(np.float64) - OPENING_GAP_M
+        return self._thin(experiences, rows, beams, away, FAR_M, FAR_FINE, OPENING_BEAMS)
 
     def _thin(
         self, experiences: ExperienceMap, rows: NDArray[np.int64], beams: NDArray[np.int64], away: _Array, reach: float,

@@ -14,10 +14,24 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from app.pilot.params import DrivingParams, PilotParams
+from app.pilot.params import PilotParams
 from disk import kind
 from ratslam_core import Odometry
 from ratslam_core.beats import BEAT_S, Beats
+
+ECHO_RANGE_M = 1.6  # echoes from farther away are ignored
+ARC_S, SPOT_S = 1.2, 0.6  # time over which an arc (D 4.3), and a turn on the spot, is planned ahead
+ARC_STEPS = 8  # points on an arc that are tested for clearance
+ARCS = 6  # tried to each side at each speed
+SHARES = (1.0, 0.6, 0.3, 0.0)  # of the cruise speed that are tried; the last: turns on the spot ...
+SPOT_SHARE = 0.5  # ... of which the slowest is this share of the turn rate
+TURN_COST = 0.25  # m/rad, of the angle left to turn at the end of an arc
+BEARING_M = 0.15  # nearer to its target, an arc is judged by the bearing from the robot, not from the arc's end
+NARROW_M = 0.15  # margin beyond the clearance in which an echo costs, less the farther away it is ...
+NARROW_COST = 0.15  # m, of one exactly at the clearance
+ESCAPE_M2 = 1e-4  # on the way out, the squared distance of an echo that is too close may shrink by this much
+GAP_RAD, GAP_STEPS = 1.4, 8  # how far beside the next point a gap is looked for, in so many steps to each side
+GAP_COST = 0.3  # m/rad: free way that a turn from the point's direction is worth
 
 _Array = NDArray[np.float64]  # (n, 2): points in the robot's frame, m
 
@@ -28,18 +42,6 @@ class Choice(NamedTuple):
     speed: float
     turn_rate: float
     clearance: float
-    arc_s: float
-    steps: int
-    arcs: int
-    medium: float
-    slow: float
-    spot: float
-    spot_s: float
-    turn_cost: float
-    bearing_m: float
-    narrow_m: float
-    narrow_cost: float
-    escape_m2: float
 
 
 @kind("local movement/2")
@@ -57,7 +59,7 @@ class LocalMovement:
         self._scans = max(1, round(echo_s / BEAT_S))
         self._echoes = np.full((self._scans * len(self._angles), 2), np.inf)  # in the robot's frame now
         self._beats, self._beat = Beats(), -1
-        self._choice: tuple[DrivingParams, Choice] | None = None
+        self._choice: tuple[PilotParams, Choice] | None = None
         self._asked: tuple[float, float, Choice] | None = None  # since it last sensed, for people who look
 
     def forget(self) -> None:
@@ -68,7 +70,7 @@ class LocalMovement:
         """The distance of a wall along the left side, divided by the range of the second sonar from the left."""
         return math.cos(self._angles[0] - self._angles[1])
 
-    def sense(self, ranges_m: NDArray[np.float32], odometry: Odometry, p: DrivingParams) -> None:
+    def sense(self, ranges_m: NDArray[np.float32], odometry: Odometry) -> None:
         """Move the old echoes into the robot's new frame and add the new ones. ranges_m: (8,) from its middle."""
         n, passed = len(self._angles), self._beats.take(odometry).beats
         for beat in range(self._beat + 1, self._beat + min(passed, self._scans)):
@@ -78,9 +80,9 @@ class LocalMovement:
         start = self._beat % self._scans * n
         self._asked = None
         moved, turned = odometry.speed * odometry.dt, odometry.yaw_rate * odometry.dt
-        _sense(self._echoes, moved, turned, start, ranges_m, self._angles, p.echo_range_m)
+        _sense(self._echoes, moved, turned, start, ranges_m, self._angles, ECHO_RANGE_M)
 
-    def towards(self, x: float, y: float, p: DrivingParams) -> tuple[float, float]:
+    def towards(self, x: float, y: float, p: PilotParams) -> tuple[float, float]:
         """Speed and yaw rate of the free arc that costs least on the way to (x, y), metres in the robot's frame."""
         self._asked = asked = x, y, self._chosen_by(p)
         return _best_arc(self._echoes, *asked)
@@ -90,9 +92,9 @@ class LocalMovement:
         """What `candidates` needs to tell about the choice in this tick, as copies; None: there was none."""
         return None if self._asked is None else (self._echoes.copy(), *self._asked)
 
-    def free_way(self, bearing: float, p: DrivingParams) -> float:
+    def free_way(self, bearing: float, p: PilotParams) -> float:
         """How far (m) the robot can drive straight in this direction (rad) before it is too close to an echo."""
-        return _free_way(self._echoes, bearing, p.clearance, p.echo_range_m)
+        return _free_way(self._echoes, bearing, p.clearance, ECHO_RANGE_M)
 
     def gap_towards(self, x: float, y: float, p: PilotParams) -> tuple[float, float]:
         """[ours] (x, y), or if echoes are in the way, a point in the freest direction beside it. Metres, robot's frame.
@@ -103,16 +105,13 @@ class LocalMovement:
         bearing = math.atan2(y, x)
         if want <= 0 or self.free_way(bearing, p) >= want:
             return x, y
-        better = _freest(self._echoes, bearing, want, p.clearance, p.gap_rad / p.gap_steps, p.gap_steps, p.gap_cost)
+        better = _freest(self._echoes, bearing, want, p.clearance, GAP_RAD / GAP_STEPS, GAP_STEPS, GAP_COST)
         return want * math.cos(better), want * math.sin(better)
 
-    def _chosen_by(self, p: DrivingParams) -> Choice:
+    def _chosen_by(self, p: PilotParams) -> Choice:
         """The same object for the same parameters, since it is needed in every tick."""
         if self._choice is None or self._choice[0] is not p:
-            self._choice = p, Choice(
-                p.cruise_speed, p.turn_rate, p.clearance, p.arc_s, p.arc_steps, p.arcs_a_side, p.medium_share, p.slow_share,
-                p.spot_share, p.spot_s, p.turn_cost, p.bearing_m, p.narrow_m, p.narrow_cost, p.escape_m2,
-            )  # fmt: skip
+            self._choice = p, Choice(p.cruise_speed, p.turn_rate, p.clearance)
         return self._choice[1]
 
 
@@ -174,19 +173,19 @@ def _freest(
 def _best_arc(echoes: _Array, x: float, y: float, p: Choice) -> tuple[float, float]:
     """Speed and yaw rate of the cheapest arc that keeps clear of all echoes; a turn on the spot is always clear."""
     best, best_v, best_w = np.inf, 0.0, 0.0
-    near = _within(echoes, p.speed * p.arc_s + p.clearance + 2 * p.narrow_m, p)  # generously
+    near = _within(echoes, p.speed * ARC_S + p.clearance + 2 * NARROW_M)  # generously
     facing = _facing_of(p)
-    for share in (1.0, p.medium, p.slow, 0.0):
+    for share in SHARES:
         v = p.speed * share
-        for wi in range(-p.arcs, p.arcs + 1):
-            if v == 0.0 and abs(wi) < p.spot * p.arcs:
+        for wi in range(-ARCS, ARCS + 1):
+            if v == 0.0 and abs(wi) < SPOT_SHARE * ARCS:
                 continue
-            w = p.turn_rate * wi / p.arcs
+            w = p.turn_rate * wi / ARCS
             px, py, nearest, free = 0.0, 0.0, np.inf, True
             if v > 0.0:
-                px, py, nearest, free = _along(near, v * (p.arc_s / p.steps), facing[wi + p.arcs], p)
+                px, py, nearest, free = _along(near, v * (ARC_S / ARC_STEPS), facing[wi + ARCS], p)
             if free:
-                cost = _cost_of(x, y, px, py, w * (p.arc_s if v > 0.0 else p.spot_s), nearest, p)
+                cost = _cost_of(x, y, px, py, w * (ARC_S if v > 0.0 else SPOT_S), nearest, p)
                 if cost < best:
                     best, best_v, best_w = cost, v, w
     return best_v, best_w
@@ -214,23 +213,23 @@ def candidates(echoes: _Array, x: float, y: float, p: Choice) -> Candidates:
 
     echoes: (n, 2) m, robot's frame. test_candidates.py::test_the_cheapest_candidate_is_the_one_that_was_chosen.
     """
-    near, facing = _within(echoes, p.speed * p.arc_s + p.clearance + 2 * p.narrow_m, p), _facing_of(p)
+    near, facing = _within(echoes, p.speed * ARC_S + p.clearance + 2 * NARROW_M), _facing_of(p)
     rows: list[tuple[float, float, float, float]] = []
     paths: list[NDArray[np.float64]] = []
-    for share in (1.0, p.medium, p.slow, 0.0):
+    for share in SHARES:
         v = p.speed * share
-        for wi in range(-p.arcs, p.arcs + 1):
-            if v == 0.0 and abs(wi) < p.spot * p.arcs:
+        for wi in range(-ARCS, ARCS + 1):
+            if v == 0.0 and abs(wi) < SPOT_SHARE * ARCS:
                 continue
-            w, step = p.turn_rate * wi / p.arcs, v * (p.arc_s / p.steps)
+            w, step = p.turn_rate * wi / ARCS, v * (ARC_S / ARC_STEPS)
             px, py, nearest, free = 0.0, 0.0, np.inf, True
             if v > 0.0:
-                px, py, nearest, free = _along(near, step, facing[wi + p.arcs], p)
-            turned = w * (p.arc_s if v > 0.0 else p.spot_s)
+                px, py, nearest, free = _along(near, step, facing[wi + ARCS], p)
+            turned = w * (ARC_S if v > 0.0 else SPOT_S)
             rows.append((turned, v, w, _cost_of(x, y, px, py, turned, nearest, p) if free else np.inf))
-            paths.append(np.vstack([np.zeros((1, 2)), np.cumsum(step * facing[wi + p.arcs], axis=0)]))
+            paths.append(np.vstack([np.zeros((1, 2)), np.cumsum(step * facing[wi + ARCS], axis=0)]))
     turned_rad, speed, yaw_rate, cost = np.array(rows).T
-    return Candidates(np.array(paths), turned_rad, speed * p.arc_s, speed, yaw_rate, cost)
+    return Candidates(np.array(paths), turned_rad, speed * ARC_S, speed, yaw_rate, cost)
 
 
 @njit(cache=True, nogil=True)
@@ -243,7 +242,7 @@ def _along(near: tuple[_Array, _Array], step: float, facing: _Array, p: Choice) 
     places, limits = near
     x, y, limit, least = places[0], places[1], limits[0], limits[1]
     least[:] = np.inf
-    for k in range(p.steps):
+    for k in range(ARC_STEPS):
         px += step * facing[k, 0]
         py += step * facing[k, 1]
         too_close = 0
@@ -264,25 +263,25 @@ def _along(near: tuple[_Array, _Array], step: float, facing: _Array, p: Choice) 
 def _cost_of(x: float, y: float, px: float, py: float, heading: float, nearest: float, p: Choice) -> float:
     """Cost in metres: distance left from the arc's end to (x, y), angle left to turn, and passing close to an echo."""
     left = math.hypot(x - px, y - py)
-    aim = math.atan2(y - py, x - px) - heading if left > p.bearing_m else math.atan2(y, x) - heading
+    aim = math.atan2(y - py, x - px) - heading if left > BEARING_M else math.atan2(y, x) - heading
     aim = abs(aim - 2 * math.pi * np.round(aim / (2 * math.pi)))
-    close = max(0.0, p.clearance + p.narrow_m - math.sqrt(nearest)) / p.narrow_m
-    return left + p.turn_cost * aim + p.narrow_cost * close
+    close = max(0.0, p.clearance + NARROW_M - math.sqrt(nearest)) / NARROW_M
+    return left + TURN_COST * aim + NARROW_COST * close
 
 
 @njit(cache=True, nogil=True)
 def _facing_of(p: Choice) -> _Array:
     """Cosine and sine of the heading in the middle of each step of each arc."""
-    out = np.empty((2 * p.arcs + 1, p.steps, 2))
-    for wi in range(-p.arcs, p.arcs + 1):
-        for k in range(p.steps):
-            heading = p.turn_rate * wi / p.arcs * (k + 0.5) * p.arc_s / p.steps
-            out[wi + p.arcs, k, 0], out[wi + p.arcs, k, 1] = math.cos(heading), math.sin(heading)
+    out = np.empty((2 * ARCS + 1, ARC_STEPS, 2))
+    for wi in range(-ARCS, ARCS + 1):
+        for k in range(ARC_STEPS):
+            heading = p.turn_rate * wi / ARCS * (k + 0.5) * ARC_S / ARC_STEPS
+            out[wi + ARCS, k, 0], out[wi + ARCS, k, 1] = math.cos(heading), math.sin(heading)
     return out
 
 
 @njit(cache=True, nogil=True)
-def _within(echoes: _Array, reach: float, p: Choice) -> tuple[_Array, _Array]:
+def _within(echoes: _Array, reach: float) -> tuple[_Array, _Array]:
     """The echoes within `reach`, in their order, (2, n); no other can matter to an arc.
 
     And in (2, n) how near (m²) an arc must come to count as too close, since an echo that is already too close does
@@ -294,6 +293,6 @@ def _within(echoes: _Array, reach: float, p: Choice) -> tuple[_Array, _Array]:
         away = echoes[e, 0] * echoes[e, 0] + echoes[e, 1] * echoes[e, 1]
         if away <= reach * reach:
             places[0, n], places[1, n] = echoes[e, 0], echoes[e, 1]
-            limits[0, n] = away - p.escape_m2
+            limits[0, n] = away - ESCAPE_M2
             n += 1
     return places[:, :n].copy(), limits[:, :n].copy()  # rows without gaps, or the compiler cannot vectorise

@@ -15,10 +15,16 @@ from bisect import bisect
 import numpy as np
 from numpy.typing import NDArray
 
-from app.pilot.known_ground import placed
+from app.pilot.known_ground import FAR_M, OPENING_GAP_M, placed
 from app.pilot.params import PilotParams
 from disk import kind
 from ratslam_core import ExperienceMap, Pose2
+
+LOOP_M = 30.0  # known ground at least this far by the links closes a loop, if it is near: `loop_share` of that way ...
+LOOP_MOST_M = 150.0  # ... of which no more counts than this
+LOOP_DRIVE_M = 25.0  # it is followed for this far, so that it is recognised
+LOOP_AGAIN_S = 300.0  # from the same place it is tried again after this time
+MIDDLE_M, MIDDLE_AHEAD_M = 0.5, 1.5  # it keeps to the middle, steering aside by at most this, at a point so far ahead
 
 _Array = NDArray[np.float64]
 
@@ -49,18 +55,18 @@ class LoopCloser:
     ) -> bool:
         """Whether there is a loop to close; then `road` is set. times: (n,) s, to each experience by the links."""
         poses, robot = experiences.poses, experiences.robot
-        if self._tried_near(robot, experiences, now_s, p):
+        if self._tried_near(robot, experiences, now_s):
             return False
         dx, dy = poses[:, 0] - robot.x, poses[:, 1] - robot.y
         away, way = np.hypot(dx, dy), times * p.cruise_speed
-        near = np.flatnonzero((away < p.loop_share * np.minimum(way, p.loop_most_m)) & (way > p.loop_m))
+        near = np.flatnonzero((away < p.loop_share * np.minimum(way, LOOP_MOST_M)) & (way > LOOP_M))
         turn = np.abs(wrapped(poses[near, 2] - robot.heading_rad))
         near = near[np.argsort(away[near] / p.cruise_speed + turn / p.turn_rate, kind="stable")]
         bearing = wrapped(np.arctan2(dy[near], dx[near]) - robot.heading_rad)
         beams = np.argmin(np.abs(self._angles - bearing[:, None]), axis=1)
-        seen = ranges_m[beams] >= np.minimum(away[near], p.far_m + p.opening_gap_m)
+        seen = ranges_m[beams] >= np.minimum(away[near], FAR_M + OPENING_GAP_M)
         for row in near[seen & (np.abs(bearing) <= abs(self._angles[0]))].tolist():
-            road = _road(poses, row, p)
+            road = _road(poses, row)
             if len(road) > 1:
                 here = experiences.pose(experiences.active).inverse().compose(robot)
                 self._tried.append((experiences.active, here.x, here.y))
@@ -69,12 +75,12 @@ class LoopCloser:
                 return True
         return False
 
-    def _tried_near(self, robot: Pose2, experiences: ExperienceMap, now_s: float, p: PilotParams) -> bool:
+    def _tried_near(self, robot: Pose2, experiences: ExperienceMap, now_s: float) -> bool:
         """Whether it was tried near here, and not long ago."""
         if self._tried and max(row for row, _, _ in self._tried) >= len(experiences):  # another map
             self._tried, self._tried_s = [], []
-        x, y = placed(self._tried[bisect(self._tried_s, now_s - p.loop_again_s) :], experiences.poses).T
-        return bool(np.any(np.hypot(x - robot.x, y - robot.y) < p.far_m))
+        x, y = placed(self._tried[bisect(self._tried_s, now_s - LOOP_AGAIN_S) :], experiences.poses).T
+        return bool(np.any(np.hypot(x - robot.x, y - robot.y) < FAR_M))
 
     def aim(self, experiences: ExperienceMap, p: PilotParams) -> tuple[tuple[float, float] | None, bool]:
         """The next point to head for, m, robot's frame, None at the end of the road or when the loop is closed; and
@@ -82,32 +88,32 @@ class LoopCloser:
         pose, passed = experiences.pose(self.road[0]), False
         here = pose.inverse().compose(experiences.robot)
         if not self._there:
-            self._there = math.hypot(here.x, here.y) < p.far_m
-        elif here.x > -p.far_m / 2:
+            self._there = math.hypot(here.x, here.y) < FAR_M
+        elif here.x > -FAR_M / 2:
             del self.road[0]
             if not self.road or self._closed(experiences, p):
                 return None, False
             pose, passed = experiences.pose(self.road[0]), True
             here = pose.inverse().compose(experiences.robot)
-        aside = here.y - max(-p.middle_m, min(p.middle_m, here.y)) if self._there else 0.0
-        ahead = max(here.x + p.middle_ahead_m, 0.0) if self._there else 0.0
+        aside = here.y - max(-MIDDLE_M, min(MIDDLE_M, here.y)) if self._there else 0.0
+        ahead = max(here.x + MIDDLE_AHEAD_M, 0.0) if self._there else 0.0
         point = experiences.robot.inverse().compose(pose.compose(Pose2(ahead, aside, 0.0)))
         return (point.x, point.y), passed
 
     def _closed(self, experiences: ExperienceMap, p: PilotParams) -> bool:
         """Whether links lead to the road by now."""
         times = experiences.temporal_map.times_to(experiences.active)
-        return bool(times[self.road[0]] * p.cruise_speed < p.loop_m)
+        return bool(times[self.road[0]] * p.cruise_speed < LOOP_M)
 
 
-def _road(poses: _Array, start: int, p: PilotParams) -> list[int]:
-    """Experiences from this one on in the direction it faces, some metres apart, as far as `loop_drive_m`."""
+def _road(poses: _Array, start: int) -> list[int]:
+    """Experiences from this one on in the direction it faces, some metres apart, as far as `LOOP_DRIVE_M`."""
     road, way = [start], 0.0
-    while way < p.loop_drive_m:
+    while way < LOOP_DRIVE_M:
         x, y, heading = poses[road[-1]]
         c, s = math.cos(heading), math.sin(heading)
         ahead, aside = c * (poses[:, 0] - x) + s * (poses[:, 1] - y), -s * (poses[:, 0] - x) + c * (poses[:, 1] - y)
-        on = (ahead > p.far_m) & (ahead < 2 * p.far_m) & (np.abs(aside) < p.far_m / 2)
+        on = (ahead > FAR_M) & (ahead < 2 * FAR_M) & (np.abs(aside) < FAR_M / 2)
         turn = poses[:, 2] - heading  # on the road is what faces along it rather than across
         on = np.flatnonzero(on & (np.cos(turn) > np.abs(np.sin(turn))))
         if not len(on):

@@ -145,19 +145,19 @@ class Pilot:
     def _decide(
         self, ranges_m: NDArray[np.float32], bumped: bool, odometry: Odometry, experiences: ExperienceMap
     ) -> tuple[float, float]:
-        self._local.sense(ranges_m, odometry, self.params)
-        self._seeker.ground.step(experiences, ranges_m, abs(odometry.speed * odometry.dt), odometry.dt, self.params)
+        self._local.sense(ranges_m, odometry)
+        self._seeker.ground.step(experiences, ranges_m, abs(odometry.speed * odometry.dt), odometry.dt)
         if self.mode == "manual":
             return self._by_hand()
         to_goal = self.mode == "goal" and self._follower is not None
         if to_goal and self._follower is not None:
-            searched, self._carried = self._carried, self._follower.carried_away(experiences, odometry.dt, self.params)
+            searched, self._carried = self._carried, self._follower.carried_away(experiences, odometry.dt)
             to_goal = not self._carried  # first it has to find its map again
             if searched and to_goal:
                 self._seeker.stop()
         follower = self._follower if to_goal else self._seeker.follower
         if follower is not None:
-            follower.move(odometry, self.behaviour is not Behaviour.FREEING_ITSELF, self.params)
+            follower.move(odometry, self.behaviour is not Behaviour.FREEING_ITSELF)
         drive = self._freeing.step(bumped, odometry, self._asked[1], self.params)
         if drive is not None:
             self.behaviour = Behaviour.FREEING_ITSELF
@@ -214,7 +214,7 @@ class Pilot:
             return self._local.towards(*self._local.gap_towards(*target, self.params), self.params)
         if not self._astray:
             self._astray = True
-            self._explorer.begin_crossing(self.params)
+            self._explorer.begin_crossing()
         return None
 
     def _by_hand(self) -> tuple[float, float]:

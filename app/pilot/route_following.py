@@ -14,12 +14,33 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from app.pilot.bars import Bars, bar_ahead, crosses
+from app.pilot.bars import WIDEST_BAR_M, Bars, bar_ahead, crosses
 from app.pilot.local_movement import LocalMovement
-from app.pilot.params import PilotParams, RouteParams
+from app.pilot.params import PilotParams
 from disk import kind
 from ratslam_core import ExperienceMap, Odometry, Pose2, Route
 from web.messages import GoalState
+
+LOOKAHEAD_M = 0.6  # how far ahead on the route the robot aims
+WINDOW_M = 1.5  # it is looked for on so much of the route ahead, not where the route comes past again later
+CLOSE_BY_M = 0.6  # nearer to its goal than this, a robot that gets no nearer has arrived, too ...
+CLOSE_BY_S = 6.0  # ... after this time; at half that distance, after half of it
+GOOD_ENOUGH_M = 1.0  # blocked nearer to its goal than this it has arrived, as where the map has the goal in a wall
+NEARER_M = 0.02  # to get nearer means to get nearer by more than this
+REPLAN_S, COAST_S = 1.0, 8.0  # a route is planned anew after this, and followed for this when it could not be (D 4.4)
+CREDITED_PLANS = 2.0  # a route older than so many planning periods earns no successful trials
+LOST_S = 25.0  # a goal is called unreachable when no route is known for this long
+STAY_S = 4.0  # the robot leaves its route for another only if that saves more than this
+NEAR_M = 0.6  # a route may start over an imagined link to an experience this near ...
+NEAR_GROWTH, NEAR_MOST_M = 0.1, 2.0  # ... while no route is known, ever farther: m/s, up to this ...
+NEAR_SPEED, NEAR_TURN_COST = 0.3, 0.3  # ... on which m/s, and s/rad for the turn at its end, are assumed ...
+NEAR_COST = 3.0  # ... s added, since nobody has driven it ...
+NEAR_DOUBT_S = 15.0  # ... and for each bar and failure: there the map may show side by side what is not ...
+NEAR_BLIND_M = 0.2  # ... and the sonars must find it free but for so much
+HEADWAY_M, HEADWAY_RAD = 0.1, 0.3  # headway is to come nearer, by odometry, or to turn to the next point, by this
+TRIAL_S = 2.0  # no headway for this long is a failed trial of the way ahead (D 3.4)
+PLACE_M, NO_HEADWAY_S = 1.0, 25.0  # a robot that stays within this for this long ...
+LOOK_AROUND_S = 15.0  # ... looks around for this long, since what the map takes for a way may be a wall
 
 _Array = NDArray[np.float64]
 
@@ -60,15 +81,15 @@ class RouteFollower:
     def goal(self) -> int:
         return self.goals[0]
 
-    def move(self, odometry: Odometry, trying: bool, p: RouteParams) -> None:
+    def move(self, odometry: Odometry, trying: bool) -> None:
         """The robot moved. Called in every tick on the way to the goal. trying: whether it drove as `step` said."""
         self._bars.fade(odometry.dt)
         if self._look_around_s > 0:
             self._look_around_s -= odometry.dt
         elif self.state != "arrived":
-            self._headway.move(odometry, trying, p)
+            self._headway.move(odometry, trying)
 
-    def carried_away(self, experiences: ExperienceMap, dt: float, p: RouteParams) -> bool:
+    def carried_away(self, experiences: ExperienceMap, dt: float) -> bool:
         """[ours] Whether the robot was carried to a submap that no experience of the goal lies on. Where it is to the
         goal is unknown, and there is no way before the two are merged.
         test_routes.py::test_carried_away_from_the_goal_it_looks_for_the_way_back."""
@@ -77,7 +98,7 @@ class RouteFollower:
             return False
         self.failed, self._route, self._age_s, self._plan_in_s = False, None, math.inf, 0.0
         self._nearest_m, self._since_nearer_s = math.inf, 0.0
-        self.state = self._state_on_the_way(dt, p, sure=not experiences.lost)
+        self.state = self._state_on_the_way(dt, sure=not experiences.lost)
         return True
 
     def step(
@@ -95,33 +116,33 @@ class RouteFollower:
         self._age_s += dt
         self._plan_in_s -= dt
         away = math.hypot(*goal)
-        blocked = self._watch_headway(p)
-        if self._there(away, dt, p) or (blocked and away < p.good_enough_m):
+        blocked = self._watch_headway()
+        if self._there(away, dt, p) or (blocked and away < GOOD_ENOUGH_M):
             if sure:
                 self.state = "arrived"
                 return None
-            self._look_around_s = p.look_around_s
+            self._look_around_s = LOOK_AROUND_S
         if blocked:
             self._fail(experiences, p)
         if self._plan_in_s <= 0:
-            self._plan_in_s = p.replan_s
+            self._plan_in_s = REPLAN_S
             self.plan(experiences, local, p)
-        self.state = self._state_on_the_way(dt, p, sure=sure)
-        aim = self._aim(experiences, p) if self.state in ("tracking", "coasting") else None
+        self.state = self._state_on_the_way(dt, sure=sure)
+        aim = self._aim(experiences) if self.state in ("tracking", "coasting") else None
         if aim is not None and self._free_to(goal, local, p):
             aim = goal
         self._headway.head_for(aim)
         return aim
 
-    def _state_on_the_way(self, dt: float, p: RouteParams, *, sure: bool) -> GoalState:
+    def _state_on_the_way(self, dt: float, *, sure: bool) -> GoalState:
         """sure: who does not know where it is cannot say that no way leads from there."""
-        if self._route is None or self._age_s > p.coast_s:
+        if self._route is None or self._age_s > COAST_S:
             self._no_route_s += dt
-            return "unreachable" if sure and self._no_route_s > p.lost_s else "exploring"
+            return "unreachable" if sure and self._no_route_s > LOST_S else "exploring"
         self._no_route_s = 0.0
         if self._look_around_s > 0:
             return "exploring"
-        return "tracking" if self._age_s <= p.replan_s + dt else "coasting"
+        return "tracking" if self._age_s <= REPLAN_S + dt else "coasting"
 
     def progress(self, experiences: ExperienceMap) -> Progress:
         nothing = np.zeros(0, np.int64), np.zeros(0)
@@ -137,34 +158,34 @@ class RouteFollower:
         remaining = first + float(np.hypot(*np.diff(xy, axis=0).T).sum())
         return Progress(self.goal, self.state, float(arrival[-1]), remaining, nodes, arrival)
 
-    def _watch_headway(self, p: RouteParams) -> bool:
+    def _watch_headway(self) -> bool:
         """Whether a trial of the way ahead has failed for want of headway. A robot that stays at one place for long
         looks around. test_routes.py::{test_a_blocked_way_is_left, test_a_door_that_was_shut_is_given_up}.
         """
         if self._look_around_s > 0 or self._route is None:
             return False
-        if self._headway.astray(p):
+        if self._headway.astray():
             self._headway.leave()
-            self._look_around_s = p.look_around_s
-        if not self._headway.blocked(p):
+            self._look_around_s = LOOK_AROUND_S
+        if not self._headway.blocked():
             return False
         self._headway.begin()
         return True
 
-    def _fail(self, experiences: ExperienceMap, p: RouteParams) -> None:
+    def _fail(self, experiences: ExperienceMap, p: PilotParams) -> None:
         """The robot could not cross a line ahead of it, the bar. With fading bars the ways across it are slower for a
         while; without, it is a failed trial of every link across it. ACRA 2006 3.4.
 
         [ours] Every link counts, not only that of the route. A place has many experiences, and otherwise the robot
         would try their links one by one.
         """
-        bearing = math.atan2(*self._aim(experiences, p)[::-1])
+        bearing = math.atan2(*self._aim(experiences)[::-1])
         self._bars.add(experiences.robot, bearing, p)
         self.failed, self._plan_in_s, self._route = True, 0.0, None
         if p.bar_fade_s:
             return
         links, xy = experiences.links, experiences.poses[:, :2]
-        bar = bar_ahead(experiences.robot, bearing, p.widest_bar_m, p)
+        bar = bar_ahead(experiences.robot, bearing, WIDEST_BAR_M)
         across = links[crosses(bar, xy[links[:, 0]], xy[links[:, 1]])]
         pairs = np.unique(np.sort(across, axis=1), axis=0)
         for i, j in pairs:
@@ -176,12 +197,12 @@ class RouteFollower:
         nearest = int(np.argmin(np.hypot(places[:, 0] - robot.x, places[:, 1] - robot.y)))
         return _from_robot(robot, *places[nearest])
 
-    def _there(self, away: float, dt: float, p: RouteParams) -> bool:
+    def _there(self, away: float, dt: float, p: PilotParams) -> bool:
         """Near enough; or close by and no longer getting nearer, as at a goal in a corner too tight for the robot."""
-        self._since_nearer_s = 0.0 if away < self._nearest_m - p.nearer_m else self._since_nearer_s + dt
+        self._since_nearer_s = 0.0 if away < self._nearest_m - NEARER_M else self._since_nearer_s + dt
         self._nearest_m = min(self._nearest_m, away)
-        patience = p.close_by_s * away / p.close_by_m if p.close_by_m else math.inf
-        return away < p.arrival_m or (away < p.close_by_m and self._since_nearer_s > patience)
+        patience = CLOSE_BY_S * away / CLOSE_BY_M
+        return away < p.arrival_m or (away < CLOSE_BY_M and self._since_nearer_s > patience)
 
     def _free_to(self, goal: tuple[float, float], local: LocalMovement, p: PilotParams) -> bool:
         """[ours] Whether the robot may leave the route and drive straight to the goal, since the sonars see nothing in
@@ -191,9 +212,9 @@ class RouteFollower:
 
     def plan(self, experiences: ExperienceMap, local: LocalMovement, p: PilotParams) -> None:
         """Plan the quickest route, from the active experience or, over an imagined link, from another one nearby."""
-        self._succeed(experiences, p)
+        self._succeed(experiences)
         t = experiences.transitions
-        delays = self._bars.delays(t.ends[: t.count], experiences.poses, p) if p.bar_fade_s else None
+        delays = self._bars.delays(t.ends[: t.count], experiences.poses) if p.bar_fade_s else None
         ways, robot, poses = experiences.temporal_map, experiences.robot, experiences.poses
         times = ways.times_to(self.goals, delays)
         away = np.hypot(poses[:, 0] - robot.x, poses[:, 1] - robot.y)
@@ -212,15 +233,15 @@ class RouteFollower:
         times: to the goal, s; away: from the robot, m; (n,) each.
         """
         robot, poses, active = experiences.robot, experiences.poses, experiences.active
-        reach = max(p.near_m, min(p.near_m + p.near_growth * self._no_route_s, p.near_most_m))
+        reach = min(NEAR_M + NEAR_GROWTH * self._no_route_s, NEAR_MOST_M)
         near = np.flatnonzero((away < reach) & np.isfinite(times))
         near = near[~self._bars.between(robot.x, robot.y, poses[near, :2])]
         on_route = -1 if self._route is None else int(self._route.experiences[self._at])
         near = np.append(near, active)
         turn = np.abs(np.remainder(poses[near, 2] - robot.heading_rad + np.pi, 2 * np.pi) - np.pi)
-        cost = times[near] + away[near] / p.near_speed + p.near_turn_cost * turn
-        cost += (p.near_cost + p.near_doubt_s * self._bars.failures) * ((near != active) & (near != on_route))
-        cost -= p.stay_s * (near == on_route)
+        cost = times[near] + away[near] / NEAR_SPEED + NEAR_TURN_COST * turn
+        cost += (NEAR_COST + NEAR_DOUBT_S * self._bars.failures) * ((near != active) & (near != on_route))
+        cost -= STAY_S * (near == on_route)
         for at in np.argsort(cost, kind="stable").tolist():
             if near[at] in (active, on_route) or self._sees(_from_robot(robot, *poses[near[at], :2]), local, p):
                 return int(near[at])
@@ -228,22 +249,20 @@ class RouteFollower:
 
     def _sees(self, place: tuple[float, float], local: LocalMovement, p: PilotParams) -> bool:
         """Whether the sonars, which look ahead and to the sides, find the way to a place (m, robot's frame) free."""
-        return (
-            place[0] >= 0 and local.free_way(math.atan2(place[1], place[0]), p) >= math.hypot(*place) - p.near_blind_m
-        )
+        return place[0] >= 0 and local.free_way(math.atan2(place[1], place[0]), p) >= math.hypot(*place) - NEAR_BLIND_M
 
-    def _succeed(self, experiences: ExperienceMap, p: RouteParams) -> None:
+    def _succeed(self, experiences: ExperienceMap) -> None:
         """Every link of the route that was driven since the last plan counts as a successful trial."""
-        if self._route is None or self._age_s > p.credited_plans * p.replan_s:
+        if self._route is None or self._age_s > CREDITED_PLANS * REPLAN_S:
             return
         for i, j in pairwise(self._route.experiences[: self._at + 1]):
             experiences.tried(int(i), int(j), True)
 
-    def _aim(self, experiences: ExperienceMap, p: RouteParams) -> tuple[float, float]:
-        """The route's point `lookahead_m` ahead of the robot. Notes how far on the route the robot has come."""
+    def _aim(self, experiences: ExperienceMap) -> tuple[float, float]:
+        """The route's point `LOOKAHEAD_M` ahead of the robot. Notes how far on the route the robot has come."""
         assert self._route is not None
         robot, nodes = experiences.robot, self._route.experiences
-        self._at, to = _along(experiences.poses, nodes, self._at, robot.x, robot.y, p.window_m, p.lookahead_m)
+        self._at, to = _along(experiences.poses, nodes, self._at, robot.x, robot.y, WINDOW_M, LOOKAHEAD_M)
         x, y, _ = experiences.poses[nodes[to]]
         return _from_robot(robot, x, y)
 
@@ -281,7 +300,7 @@ def _along(
 class Headway:
     """Whether the robot gets on along its route, judged by its own odometry.
 
-    `blocked`: it has come no nearer for `trial_s`. `astray`: it has not left the place for `no_headway_s`. [ours] The
+    `blocked`: it has come no nearer for `TRIAL_S`. `astray`: it has not left the place for `NO_HEADWAY_S`. [ours] The
     time that a link was learnt to take is no measure: floor may be slow, the map may be bent, and the time left jumps
     with each new plan. What counts is by how much the robot itself has come nearer to the points it headed for.
     test_headway.py::{test_slow_is_not_blocked, test_a_robot_that_comes_no_nearer_fails,
@@ -305,17 +324,17 @@ class Headway:
         self._stays_s = self._off_x = self._off_y = 0.0
         self.begin()
 
-    def blocked(self, p: RouteParams) -> bool:
-        return self._still_s > p.trial_s
+    def blocked(self) -> bool:
+        return self._still_s > TRIAL_S
 
-    def astray(self, p: RouteParams) -> bool:
-        return self._stays_s > p.no_headway_s
+    def astray(self) -> bool:
+        return self._stays_s > NO_HEADWAY_S
 
     def head_for(self, aim: tuple[float, float] | None) -> None:
         """aim: the next point (m, robot's frame), None for no route."""
         self._aim = aim
 
-    def move(self, odometry: Odometry, trying: bool, p: RouteParams) -> None:
+    def move(self, odometry: Odometry, trying: bool) -> None:
         """The robot moved; called in every tick. trying: whether it drove towards the aim, and did not back out."""
         step, turn = odometry.speed * odometry.dt, odometry.yaw_rate * odometry.dt
         middle = self._heading + turn / 2
@@ -323,7 +342,7 @@ class Headway:
         self._off_x += step * math.cos(middle)
         self._off_y += step * math.sin(middle)
         self._stays_s += odometry.dt
-        if math.hypot(self._off_x, self._off_y) > p.place_m:
+        if math.hypot(self._off_x, self._off_y) > PLACE_M:
             self._stays_s = self._off_x = self._off_y = 0.0
         if self._aim is None:
             return
@@ -335,7 +354,7 @@ class Headway:
         self._nearer_m += away - math.hypot(x, y)
         self._still_s += odometry.dt * trying
         bearing = abs(math.atan2(self._aim[1], self._aim[0]))
-        if self._nearer_m > self._most_m + p.headway_m:
+        if self._nearer_m > self._most_m + HEADWAY_M:
             self._most_m, self._least_turn, self._still_s = self._nearer_m, bearing, 0.0
-        elif bearing < self._least_turn - p.headway_rad:
+        elif bearing < self._least_turn - HEADWAY_RAD:
             self._least_turn, self._still_s = bearing, 0.0

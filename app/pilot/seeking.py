@@ -23,13 +23,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.pilot.bars import Bars
-from app.pilot.known_ground import KnownGround
+from app.pilot.known_ground import FAR_M, OLD_AFTER_S, OPENING_BEAMS, PLACE_REACH_M, KnownGround
 from app.pilot.local_movement import LocalMovement
-from app.pilot.loop_closing import LoopCloser, wrapped
+from app.pilot.loop_closing import MIDDLE_AHEAD_M, MIDDLE_M, LoopCloser, wrapped
 from app.pilot.params import PilotParams
 from app.pilot.route_following import RouteFollower
 from disk import kind
 from ratslam_core import ExperienceMap, Odometry, Pose2
+
+TRIP_MOST_S = 150.0  # a trip is given up after this time
+SMALL_MAP_S = 60.0  # every trip goes into an opening while the robot can reach all that it knows within this time
+LONG_AGO_S = 120.0  # places visited more lately than this are not sought again
+SEARCH_SHARE = 0.1  # the rest of its map is looked for while another island is larger than this share of its own ...
+SEARCH_HOME = 2.0  # ... metres of the way there that a metre from where its island began to an opening counts as ...
+SEARCH_BEAMS = 1  # ... and an opening is what so many beams have seen
+INTO_S, INTO_REACH_M = 25.0, 0.4  # driving into an opening ends after this time, or this near to its place ...
+INTO_FREE_M = 0.2  # ... or when less than this is free towards it
 
 _Point = tuple[float, float]
 
@@ -96,20 +105,20 @@ class Seeker:
         self._trip_s += odometry.dt
         aim = self._aim(self.follower, experiences, local, odometry.dt, p)
         if aim is None:
-            self._end(experiences, p)
-        return aim if aim is None or not self.into_far else _in_the_middle(aim, ranges_m, p)
+            self._end(experiences)
+        return aim if aim is None or not self.into_far else _in_the_middle(aim, ranges_m)
 
     def _aim(
         self, follower: RouteFollower, experiences: ExperienceMap, local: LocalMovement, dt: float, p: PilotParams
     ) -> _Point | None:
-        if self._trip_s > p.trip_most_s or (self.returning and self.ground.new_m == 0.0):
+        if self._trip_s > TRIP_MOST_S or (self.returning and self.ground.new_m == 0.0):
             return None
         if self._into_s < 0.0:
             aim = follower.step(experiences, local, dt, p)
             if aim is not None or follower.state != "arrived" or self._opening is None:
                 return aim
         self._into_s += dt
-        if self._into_s > p.into_s:
+        if self._into_s > INTO_S:
             return None
         if self._closer.road:
             aim, passed = self._closer.aim(experiences, p)
@@ -119,19 +128,19 @@ class Seeker:
             return None
         place = experiences.pose(follower.goal).compose(self._opening)
         here = experiences.robot.inverse().compose(place)
-        self._there = math.hypot(here.x, here.y) < (p.far_m / 2 if self._far else p.into_reach_m)
+        self._there = math.hypot(here.x, here.y) < (FAR_M / 2 if self._far else INTO_REACH_M)
         x, y = local.gap_towards(here.x, here.y, p) if _searching(experiences, p) else (here.x, here.y)
-        blocked = local.free_way(math.atan2(y, x), p) < p.into_free_m
+        blocked = local.free_way(math.atan2(y, x), p) < INTO_FREE_M
         return None if self._there or blocked else (x, y)
 
-    def _end(self, experiences: ExperienceMap, p: PilotParams) -> None:
+    def _end(self, experiences: ExperienceMap) -> None:
         assert self.follower is not None
         if self.returning and self.ground.new_m == 0.0:
             self._dares *= 2
         goal = experiences.pose(self.follower.goal)
-        self.ground.been_at(goal.x, goal.y, experiences.poses, p)
+        self.ground.been_at(goal.x, goal.y, experiences.poses)
         if self._opening is not None and not (self._far and self._there):  # beyond a far one there may be more
-            self.ground.tried(self.follower.goal, self._opening.x, self._opening.y, experiences.poses, p)
+            self.ground.tried(self.follower.goal, self._opening.x, self._opening.y, experiences.poses)
         self.stop()
 
     def _choose(
@@ -145,7 +154,7 @@ class Seeker:
         searching = _searching(experiences, p)
         far = self.ground.new_m > p.return_after_m * self._dares or drift_m > p.return_sigma_m
         self.returning = far and not searching
-        goal = self._old_ground(times, p) if self.returning else None
+        goal = self._old_ground(times) if self.returning else None
         self.returning = goal is not None
         if goal is None and self._closer.choose(experiences, ranges_m, times, self.ground.now_s, p):
             goal, self._into_s = self._closer.road[0], 0.0
@@ -153,19 +162,19 @@ class Seeker:
             goal = self._best_far_opening(experiences, local, times, p)
         if goal is None:
             self._trips += 1
-            small = float(np.max(times, initial=0.0, where=np.isfinite(times))) < p.small_map_s
+            small = float(np.max(times, initial=0.0, where=np.isfinite(times))) < SMALL_MAP_S
             if searching or small or self._trips % p.openings_every == 0:
-                goal = self._nearest_opening(experiences, times, p, p.search_beams if searching else p.opening_beams)
+                goal = self._nearest_opening(experiences, times, p, SEARCH_BEAMS if searching else OPENING_BEAMS)
             if goal is None or not searching:
                 self._wait_s = p.seek_after_s
         if goal is None and not searching:
-            goal = self._long_ago(times, p)
+            goal = self._long_ago(times)
         if goal is not None:
             self.follower = RouteFollower(goal, self._bars)
 
-    def _old_ground(self, times: NDArray[np.float64], p: PilotParams) -> int | None:
-        old = np.flatnonzero(np.isfinite(times) & (self.ground.now_s - self.ground.made_s > p.old_after_s))
-        old = old[self.ground.last_s[old] - self.ground.made_s[old] > p.old_after_s] if len(old) else old
+    def _old_ground(self, times: NDArray[np.float64]) -> int | None:
+        old = np.flatnonzero(np.isfinite(times) & (self.ground.now_s - self.ground.made_s > OLD_AFTER_S))
+        old = old[self.ground.last_s[old] - self.ground.made_s[old] > OLD_AFTER_S] if len(old) else old
         return int(old[np.argmin(times[old])]) if len(old) else None
 
     def _best_far_opening(
@@ -173,7 +182,7 @@ class Seeker:
     ) -> int | None:
         """The one that costs least: time to get there, and its distance from where the map began, since what is near
         that closes small loops."""
-        rows, places = self.ground.far_openings(experiences, p)
+        rows, places = self.ground.far_openings(experiences)
         reached = np.isfinite(times[rows])
         rows, places = rows[reached], places[reached]
         if not len(rows):
@@ -181,12 +190,12 @@ class Seeker:
         poses, robot = experiences.poses, experiences.robot
         home = np.hypot(places[:, 0] - poses[0, 0], places[:, 1] - poses[0, 1])
         leg = np.hypot(*(places - poses[rows, :2]).T)
-        near = np.hypot(poses[rows, 0] - robot.x, poses[rows, 1] - robot.y) < p.place_reach_m
+        near = np.hypot(poses[rows, 0] - robot.x, poses[rows, 1] - robot.y) < PLACE_REACH_M
         bearing = np.arctan2(places[:, 1] - robot.y, places[:, 0] - robot.x) - robot.heading_rad
         turn = np.abs(wrapped(bearing))
         cost = times[rows] * ~near + (leg + p.home_share * home) / p.cruise_speed + near * turn / p.turn_rate
         best = int(np.argmin(cost))
-        if near[best] and local.free_way(float(bearing[best]), p) > p.into_free_m:
+        if near[best] and local.free_way(float(bearing[best]), p) > INTO_FREE_M:
             self._into_s = 0.0  # it sees it from here
         self._far = True
         return self._into(experiences, int(rows[best]), places[best])
@@ -194,7 +203,7 @@ class Seeker:
     def _nearest_opening(
         self, experiences: ExperienceMap, times: NDArray[np.float64], p: PilotParams, least: int
     ) -> int | None:
-        rows, places = self.ground.openings(experiences, p, least)
+        rows, places = self.ground.openings(experiences, least)
         reached = np.isfinite(times[rows])
         rows, places = rows[reached], places[reached]
         if not len(rows):
@@ -202,7 +211,7 @@ class Seeker:
         cost = times[rows]
         if _searching(experiences, p):
             x, y = experiences.poses[np.argmax(experiences.island_of == experiences.island_of[experiences.active]), :2]
-            cost = cost + p.search_home * np.hypot(places[:, 0] - x, places[:, 1] - y) / p.cruise_speed
+            cost = cost + SEARCH_HOME * np.hypot(places[:, 0] - x, places[:, 1] - y) / p.cruise_speed
         best = int(np.argmin(cost))
         return self._into(experiences, int(rows[best]), places[best])
 
@@ -211,26 +220,26 @@ class Seeker:
         self._opening = experiences.pose(goal).inverse().compose(Pose2(float(place[0]), float(place[1]), 0.0))
         return goal
 
-    def _long_ago(self, times: NDArray[np.float64], p: PilotParams) -> int | None:
-        known = np.flatnonzero(np.isfinite(times) & (times < p.trip_most_s))
+    def _long_ago(self, times: NDArray[np.float64]) -> int | None:
+        known = np.flatnonzero(np.isfinite(times) & (times < TRIP_MOST_S))
         if not len(known):
             return None
         goal = int(known[np.argmin(self.ground.last_s[known])])
-        return goal if self.ground.now_s - self.ground.last_s[goal] > p.long_ago_s else None
+        return goal if self.ground.now_s - self.ground.last_s[goal] > LONG_AGO_S else None
 
 
 def _searching(experiences: ExperienceMap, p: PilotParams) -> bool:
-    """Whether the robot looks for the rest of its map: another island, no smaller than `search_share` of its own."""
+    """Whether the robot looks for the rest of its map: another island, no smaller than `SEARCH_SHARE` of its own."""
     if not p.search:
         return False
     sizes = np.bincount(experiences.island_of)
     own = int(experiences.island_of[experiences.active])
-    return bool(np.delete(sizes, own).max(initial=0) > p.search_share * sizes[own])
+    return bool(np.delete(sizes, own).max(initial=0) > SEARCH_SHARE * sizes[own])
 
 
-def _in_the_middle(aim: _Point, ranges_m: NDArray[np.float32], p: PilotParams) -> _Point:
+def _in_the_middle(aim: _Point, ranges_m: NDArray[np.float32]) -> _Point:
     """The aim, nearer, and moved towards the side where more is free."""
     away = math.hypot(*aim)
-    share = min(1.0, p.middle_ahead_m / away) if away > 0 else 1.0
+    share = min(1.0, MIDDLE_AHEAD_M / away) if away > 0 else 1.0
     aside = (float(ranges_m[0]) - float(ranges_m[-1])) / 2
-    return aim[0] * share, aim[1] * share + max(-p.middle_m, min(p.middle_m, aside))
+    return aim[0] * share, aim[1] * share + max(-MIDDLE_M, min(MIDDLE_M, aside))

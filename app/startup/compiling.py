@@ -152,7 +152,7 @@ def office() -> None:
     Coverage().follow(simulator.free_space, np.zeros((1, 2)))
     local = LocalMovement(_ANGLES, config.pilot.echo_s)
     local.free_way(0.0, config.pilot)
-    local.sense(np.full(len(_ANGLES), 0.2, np.float32), Odometry(0.0, 0.0, 0.1), config.pilot)
+    local.sense(np.full(len(_ANGLES), 0.2, np.float32), Odometry(0.0, 0.0, 0.1))
     local.gap_towards(1.0, 0.2, config.pilot)
     for _ in range(50):
         odometry = Odometry(frame.odometry_speed, frame.odometry_yaw_rate, frame.dt)

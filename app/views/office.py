@@ -88,7 +88,6 @@ def _switches(world: World) -> tuple[str, ...]:
         "daylight": world.daylight is not None,
         "reflections": any(wall.kind == "glass" for wall in world.walls),
         "door_s": bool(world.doors),
-        "door_tip_m": bool(world.doors),
         "patience_least_s": bool(world.people),
         "patience_most_s": bool(world.people),
         "slow_zones": bool(world.slow_zones),

@@ -13,7 +13,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from disk import kind
-from ratslam_core.params.local_view import COLUMNS, ROWS
+from ratslam_core.params import COLUMNS, ROWS
 
 SIZE = COLUMNS * ROWS
 BLOCK = 128  # stored views that stay in the processor's nearest cache while all shifts are tried

@@ -20,6 +20,7 @@ from sim2d.world.free_space import Standing
 from sim2d.world.world import World
 
 CLEARANCE_M = 0.01  # least distance from the robot of a moving leaf and of a box that appears
+DOOR_TIP_M = 0.1  # the tip of a leaf moves no farther in a tick: not over a robot, and the smallest is as wide
 
 _Named = Door | Box | Lamp
 
@@ -203,7 +204,7 @@ class Actors:
             if gap == 0.0:
                 continue
             travel = door.width * (1.0 if door.slides else abs(door.swing_rad))
-            step = min(self._tick_s / params.door_s, params.door_tip_m / max(travel, 1e-9))
+            step = min(self._tick_s / params.door_s, DOOR_TIP_M / max(travel, 1e-9))
             opening = self.opening[i] + min(max(gap, -step), step)
             after = door.leaf(opening)
             if not self._in_the_way(self.segments[i], after, robot, radius):

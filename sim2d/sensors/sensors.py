@@ -19,6 +19,12 @@ from sim2d.world.world import World
 
 Pose = tuple[float, float, float]  # x, y (m), heading (rad)
 _OWNERS = ("image", "sonar", "odometry", "pose", "noise bank", "actors", "echo", "laser")
+BUMPER_M = 0.005  # travel of the contact ring around the robot
+_SCENE_CELL_M, _SCENE_SECTOR_RAD = (
+    0.5,
+    math.radians(30),
+)  # the floor and headings of one scene number: our guess
+_STILL_SPEED, _STILL_YAW_RATE = 1e-3, 2e-3  # m/s, rad/s: a robot slower than both gives no counts
 _NOISE_S = 0.1  # `odometry_noise` is that of a movement of so long
 
 
@@ -120,13 +126,13 @@ class Sensors:
             else np.zeros((params.image_height, params.image_width, 3), np.uint8)
         )
         ranges, bumped = self._sonar(pose, params)
-        bumped = bumped or self._actors.walkers.touch(*pose[:2], params.robot_radius_m + params.bumper_m)
+        bumped = bumped or self._actors.walkers.touch(*pose[:2], params.robot_radius_m + BUMPER_M)
         scan = np.zeros(0, np.float32)
         if params.laser_beams:
             errors = self._laser_rng.standard_normal(params.laser_beams) * params.laser_noise_m
             fan = params.laser_fov_rad, params.laser_range_m
             scan = laser_ranges(self._opaque, self._actors.there, *pose, *fan, errors)
-        scene = scene_number(*pose, self._bounds, params.scene_cell_m, params.scene_sector_rad)
+        scene = scene_number(*pose, self._bounds, _SCENE_CELL_M, _SCENE_SECTOR_RAD)
         return SensorFrame(tick, time_s, image, *odometry, params.tick_s, ranges, bumped, scan, scene).freeze()
 
     def _sonar(self, pose: Pose, params: SimParams) -> tuple[NDArray[np.float32], bool]:
@@ -134,7 +140,7 @@ class Sensors:
         errors = self._sonar_rng.standard_normal(n) * params.sonar_noise_m
         ranges, bumped = sonar_ranges(
             self._obstacles, self._actors.there, *pose, self._angles, params.sonar_cone_rad, params.sonar_rays,
-            params.sonar_range_m, errors, radius + params.bumper_m,
+            params.sonar_range_m, errors, radius + BUMPER_M,
         )  # fmt: skip
         if params.sonar_false_echo > 0:
             chance = self._echo_rng.random((2, n))
@@ -161,7 +167,7 @@ def report(speed: float, yaw_rate: float, params: SimParams, rng: np.random.Gene
     """
     speed_error, yaw_error = rng.standard_normal(2).tolist()
     noise = params.odometry_noise * math.sqrt(_NOISE_S / params.tick_s)
-    if abs(speed) < params.still_speed and abs(yaw_rate) < params.still_yaw_rate:
+    if abs(speed) < _STILL_SPEED and abs(yaw_rate) < _STILL_YAW_RATE:
         return 0.0, 0.0
     return (
         speed * (1.0 + params.odometry_scale_error) * (1.0 + noise * speed_error),

@@ -36,7 +36,7 @@ test("every tab shows something, is told of while it is open only, and arrows go
       ["Tick", "of its 100 ms"],
       ["Truth", "map error, after alignment"],
       ["Office", "preset"],
-      ["Tune", "parameters"],
+      ["Tune", "For a lecture"],
     ]) {
       await page.says(await page.tab(name), words);
       if (name !== "Senses") await until(`only ${name} is asked for`, () => String(asked) === name);
@@ -104,6 +104,24 @@ test("a parameter is found, turned and set back; what is wrong with one is said;
     await page.fill(`${tune} [type=search]`, "takes effect at reset");
     assert.ok(knobs().length > 3);
     assert.ok(knobs().every((one) => one.querySelector("[role=img]")));
+  }));
+
+test("Tune opens with the dozen of a lecture; sections are closed, and say how many they have and have changed", () =>
+  walked(async (page) => {
+    const tune = await page.tab("Tune");
+    const dozen = () => page.all(`${tune} .dozen .knob`);
+    await until("they have come", () => dozen().length === 12);
+    assert.ok(dozen().every((knob) => knob.querySelector("i")?.textContent && knob.querySelector("p")?.textContent));
+    assert.ok(page.all(`${tune} details`).every((section) => !section.open));
+    const [first] = dozen().filter((knob) => knob.textContent.includes("inhibit"));
+    await page.fill(first.querySelector("input"), "0.001");
+    await page.says(`${tune} details`, "1 changed8");
+    await page.fill(`${tune} [type=search]`, "φ inhibit");
+    await page.says(`${tune} details`, "1 of 8");
+    assert.ok(!first.checkVisibility(), "it is found in its section");
+    await page.fill(`${tune} [type=search]`, "");
+    await page.click(first.querySelector("button"));
+    await until("it is as before", () => !page.text(`${tune} details`).includes("changed"));
   }));
 
 test("a switch is on for all who look, and keys drive although it has been clicked", () =>

@@ -331,6 +331,7 @@ class Parameter:
     source: str
     live: bool  # False: takes effect with the next reset
     choices: tuple[str, ...] = ()  # the texts that it may be; empty for numbers and switches
+    lecture: bool = False  # one of the dozen that Tune opens with
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -26,13 +26,20 @@ def knob(parameter: Parameter) -> dict[str, Any]:
         "step": step(parameter),
         "choices": parameter.choices,
         "live": parameter.live,
+        "lecture": parameter.lecture,
+        "meaning": meaning(parameter),
         "hint": hint(parameter),
     }
 
 
+def meaning(parameter: Parameter) -> str:
+    """As a sentence."""
+    return parameter.meaning[:1].upper() + parameter.meaning[1:] + "."
+
+
 def hint(parameter: Parameter) -> str:
     """Meaning, range, default and source, and whether a change waits for the next reset."""
-    parts = [parameter.meaning[:1].upper() + parameter.meaning[1:] + "."]
+    parts = [meaning(parameter)]
     limits = _range(parameter)
     if limits:
         parts.append(f"Range: {limits}.")

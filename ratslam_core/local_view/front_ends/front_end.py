@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ratslam_core.local_view.matcher import Features
-from ratslam_core.params.local_view import COLUMNS, ROWS
+from ratslam_core.params import COLUMNS, ROWS
 
 
 class FrontEnd(Protocol):

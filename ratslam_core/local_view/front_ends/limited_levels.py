@@ -15,7 +15,7 @@ from ratslam_core.local_view.front_ends.front_end import FrontEnd
 from ratslam_core.local_view.front_ends.image_and_sonars import EVEN, LEAST_PATTERN, LEVELS, MIDDLE, along_rows
 from ratslam_core.local_view.front_ends.template import grey_template
 from ratslam_core.local_view.matcher import Features
-from ratslam_core.params.local_view import COLUMNS, ROWS
+from ratslam_core.params import COLUMNS, ROWS
 
 MOST = 40.0  # levels: a pixel that is half as bright again as its column, and more
 

@@ -10,13 +10,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from app.pilot import PilotParams, bars
-from app.pilot.bars import Bars, crosses
+from app.pilot.bars import BAR_DELAY_S, BAR_M, Bars, crosses
 from ratslam_core import Pose2
 from tests.unit.ratslam_core import literal
 
 from .pilots import DT
 
-USUAL = PilotParams(bar_fade_s=60.0, longest_bar_s=480.0)
+USUAL = PilotParams(bar_fade_s=20.0)
 
 LINKS = np.array([(0, 1), (2, 3), (0, 3)])
 PLACES = np.array([(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 2.0, 0.0), (1.0, 2.0, 0.0)])  # the first link crosses a bar
@@ -30,16 +30,16 @@ def after(seconds: float, made: Bars) -> Bars:
 
 def test_a_bar_delays_what_crosses_it_and_fades() -> None:
     made = Bars()
-    assert made.delays(LINKS, PLACES, USUAL) is None
+    assert made.delays(LINKS, PLACES) is None
     made.add(Pose2(0.0, 0.0, -0.5), 0.5, USUAL)
-    for seconds in (0.0, 30.0, 25.0):
+    for seconds in (0.0, 10.0, 8.0):
         after(seconds, made)
-    left = 1 - 55 / USUAL.bar_fade_s
-    assert made.delays(LINKS, PLACES, USUAL) == pytest.approx(np.array([1.0, 0.0, 0.0]) * USUAL.bar_delay_s * left)
+    left = 1 - 18 / USUAL.bar_fade_s
+    assert made.delays(LINKS, PLACES) == pytest.approx(np.array([1.0, 0.0, 0.0]) * BAR_DELAY_S * left)
     assert made.failures == pytest.approx(left)
     assert made.between(0.0, 0.0, PLACES[1:3, :2]).tolist() == [True, False]
-    assert len(after(5.1, made)) == 0
-    assert made.delays(LINKS, PLACES, USUAL) is None
+    assert len(after(2.1, made)) == 0
+    assert made.delays(LINKS, PLACES) is None
 
 
 def test_failing_again_at_a_bar_makes_it_last_longer() -> None:
@@ -47,9 +47,9 @@ def test_failing_again_at_a_bar_makes_it_last_longer() -> None:
     for times in (1, 2, 3):
         made.add(Pose2(0.0, 0.05 * times, 0.0), 0.0, USUAL)
         assert len(made) == 1
-        delays = made.delays(LINKS, PLACES, USUAL)
+        delays = made.delays(LINKS, PLACES)
         assert delays is not None
-        assert delays[0] == pytest.approx(times * USUAL.bar_delay_s)
+        assert delays[0] == pytest.approx(times * BAR_DELAY_S)
         after(0.9 * USUAL.bar_fade_s * times, made)
         assert len(made) == 1  # the second lasts twice as long, the third four times
     made.add(Pose2(0.0, 1.5, 0.0), 0.0, USUAL)
@@ -71,7 +71,7 @@ def test_what_is_delayed_is_what_crosses(interpreted: bool, places: list[tuple[f
         made.add(Pose2(0.0, 0.0, heading), 0.0, USUAL)
         ends = np.array([(i, j) for i in range(len(places)) for j in range(i)])
         xy = np.array(places)
-        bar = bars.bar_ahead(Pose2(0.0, 0.0, heading), 0.0, USUAL.bar_m, USUAL)
-        delays = made.delays(ends, xy, USUAL)
+        bar = bars.bar_ahead(Pose2(0.0, 0.0, heading), 0.0, BAR_M)
+        delays = made.delays(ends, xy)
         assert delays is not None
         assert ((delays > 0) == crosses(bar, xy[ends[:, 0]], xy[ends[:, 1]])).all()

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from app.pilot import PilotParams
-from app.pilot.local_movement import LocalMovement, candidates
+from app.pilot.local_movement import ARC_S, LocalMovement, candidates
 from app.views.office import movements_of
 from ratslam_core import Odometry
 
@@ -20,10 +20,10 @@ from .sessions import a_session
 def test_the_cheapest_candidate_is_the_one_that_was_chosen(seed: int) -> None:
     rng = np.random.default_rng(seed)
     for _ in range(30):
-        p = PilotParams(arcs_a_side=int(rng.integers(1, 9)), clearance=float(rng.uniform(0.2, 0.4)))
+        p = PilotParams(clearance=float(rng.uniform(0.2, 0.4)), turn_rate=float(rng.uniform(0.3, 1.5)))
         local = LocalMovement(ANGLES, p.echo_s)
         for _ in range(5):
-            local.sense(rng.uniform(0.2, 2.5, 8).astype(np.float32), Odometry(0.3, 0.2, 0.1), p)
+            local.sense(rng.uniform(0.2, 2.5, 8).astype(np.float32), Odometry(0.3, 0.2, 0.1))
         speed, yaw_rate = local.towards(float(rng.uniform(-1, 2)), float(rng.uniform(-1, 1)), p)
         asked = local.asked
         assert asked is not None
@@ -35,7 +35,7 @@ def test_the_cheapest_candidate_is_the_one_that_was_chosen(seed: int) -> None:
 
 def test_a_candidate_is_an_arc_at_its_speed_and_yaw_rate_and_blocked_where_an_echo_is_too_close() -> None:
     local = LocalMovement(np.array([0.5]), USUAL.echo_s)  # an obstacle ahead on the left
-    local.sense(np.array([0.5], np.float32), STILL, USUAL)
+    local.sense(np.array([0.5], np.float32), STILL)
     local.towards(1.0, 0.0, USUAL)
     asked = local.asked
     assert asked is not None
@@ -46,7 +46,7 @@ def test_a_candidate_is_an_arc_at_its_speed_and_yaw_rate_and_blocked_where_an_ec
         assert np.hypot(*np.diff(path, axis=0).T).sum() == pytest.approx(found.length_m[k])
         if found.speed[k] > 0:
             turned = found.turned_rad[k]
-            assert turned == pytest.approx(found.yaw_rate[k] * USUAL.arc_s)
+            assert turned == pytest.approx(found.yaw_rate[k] * ARC_S)
             chord = found.length_m[k] * np.sinc(turned / math.tau)
             end = chord * np.array([math.cos(turned / 2), math.sin(turned / 2)])
             assert path[-1] == pytest.approx(end, abs=2e-3)
@@ -60,7 +60,7 @@ def test_who_chose_no_arc_in_this_tick_shows_none() -> None:
     assert local.asked is None
     local.towards(1.0, 0.0, USUAL)
     assert local.asked is not None
-    local.sense(np.full(8, 2.0, np.float32), STILL, USUAL)
+    local.sense(np.full(8, 2.0, np.float32), STILL)
     assert local.asked is None
     driven = a_session(5)
     driven.pilot.drive(0.2, 0.0)

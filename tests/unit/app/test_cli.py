@@ -151,7 +151,7 @@ def test_a_file_that_cannot_be_used_is_named(tmp_path: Path, capsys: Captured, s
     toml, world = tmp_path / "mine.toml", tmp_path / "mine.json"
     for file, content, sentence in (
         (toml, b"[robott]\n", "unknown section 'robott'; expected one of: pose_cells"),
-        (toml, b"[robot]\nlight = 7\n", "robot.light must be from 0.1 to 2, got 7.0"),
+        (toml, b"[robot]\nlight = 7\n", "robot.light must be between 0.1 and 2, got 7.0"),
         (toml, b"light\n", "not valid TOML"),
         (toml, b"\xff\xfe\x00", ""),
         (world, b"{", "mine.json: not JSON: line 1"),

@@ -49,7 +49,12 @@ REFUSED = [
     ({"type": "set_goal", "x": 99.0, "y": 0.0}, "x, y", (99.0, 0.0), "is off the map"),
     ({"type": "set_mode", "mode": "goal"}, "mode", "goal", "set one first"),
     ({"type": "kidnap", "x": 5.0, "y": 0.05}, "x, y", (5.0, 0.05), "the robot needs 0.22 m"),
-    ({"type": "set_parameter", "name": "robot.light", "value": 99.0}, "value", 99.0, "must be from 0.1 to 2, got 99.0"),
+    (
+        {"type": "set_parameter", "name": "robot.light", "value": 99.0},
+        "value",
+        99.0,
+        "must be between 0.1 and 2, got 99.0",
+    ),
     ({"type": "set_parameter", "name": "robot.lights", "value": 1.0}, "name", "robot.lights", "one of: robot.light"),
     ({"type": "use_preset", "name": "none"}, "name", "none", "expected one of: ours"),
     ({"type": "set_door", "name": "none", "open": True}, "name", "none", "this world has no door"),

@@ -27,8 +27,7 @@ def twice_along(y: float = 0.65) -> HandMadeMap:
 
 
 def goals_at(map_: HandMadeMap, x: float, y: float, goal_place_m: float = 0.1) -> tuple[int, ...]:
-    p = PilotParams(goal_place_m=goal_place_m)
-    return of_its_place(map_, nearest_to(map_, x, y, p), p)  # type: ignore[arg-type]
+    return of_its_place(map_, nearest_to(map_, x, y), PilotParams(goal_place_m=goal_place_m))  # type: ignore[arg-type]
 
 
 def test_whichever_way_they_face() -> None:
@@ -59,10 +58,10 @@ def test_who_is_asked_for_comes_first_also_among_those_at_exactly_the_same_place
 
 def test_the_route_leads_to_the_quickest() -> None:
     """By the links the second row is a minute farther than the first, on which the robot is."""
-    map_ = twice_along()
+    map_ = twice_along(2.0)  # too far apart for an imagined link
     routes = [RouteFollower(24), RouteFollower(24, None, [11])]
     for follower in routes:
-        follow(follower, map_, PilotParams(near_m=0.0))  # along links only
+        follow(follower, map_)
     to_one, to_either = (follower.progress(map_) for follower in routes)  # type: ignore[arg-type]
     assert (to_one.route[-1], to_either.route[-1], to_either.experience) == (24, 11, 24)  # it is still called 24
     assert to_one.eta_s is not None

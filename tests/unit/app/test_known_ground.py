@@ -7,7 +7,15 @@ import math
 import numpy as np
 import pytest
 
-from app.pilot.known_ground import KnownGround
+from app.pilot.known_ground import (
+    FAR_M,
+    OLD_AFTER_S,
+    OPENING_AGAIN_S,
+    OPENING_MOST_M,
+    PLACE_REACH_M,
+    THIN_M,
+    KnownGround,
+)
 from app.pilot.params import PilotParams
 from ratslam_core import Pose2
 
@@ -31,12 +39,12 @@ def driven(places: Places, ranges: np.ndarray = OPEN_LEFT) -> tuple[KnownGround,
     for n in range(1, len(places) + 1):
         map_ = HandMadeMap(places[:n], [])
         map_.robot = Pose2(*places[n - 1], 0.0)
-        ground.step(map_, ranges, 0.3, DT, USUAL)  # type: ignore[arg-type]
+        ground.step(map_, ranges, 0.3, DT)  # type: ignore[arg-type]
     return ground, HandMadeMap(places, [])
 
 
 def openings(ground: KnownGround, map_: HandMadeMap) -> tuple[np.ndarray, np.ndarray]:
-    return ground.openings(map_, USUAL, 3)  # type: ignore[arg-type]
+    return ground.openings(map_, 3)  # type: ignore[arg-type]
 
 
 def test_open_floor_that_was_never_driven_on_is_an_opening() -> None:
@@ -44,22 +52,22 @@ def test_open_floor_that_was_never_driven_on_is_an_opening() -> None:
     ground, map_ = driven(along(60))
     rows, places = openings(ground, map_)
     assert len(rows) == len(places) > 10
-    assert places[:, 1] == pytest.approx(USUAL.opening_most_m)
+    assert places[:, 1] == pytest.approx(OPENING_MOST_M)
     assert places[:, 0] == pytest.approx(0.1 * rows)
-    ground.tried(10, 0.5, USUAL.opening_most_m, map_.poses, USUAL)  # that is at x = 1.5 m
+    ground.tried(10, 0.5, OPENING_MOST_M, map_.poses)  # that is at x = 1.5 m
     for x, y in ((0.0, 0.0), (7.0, 5.0)):
         map_.poses[:, :2] += (x, y)
         _, left = openings(ground, map_)
         assert 0 < len(left) < len(places)
-        assert np.hypot(left[:, 0] - 1.5 - x, left[:, 1] - USUAL.opening_most_m - y).min() > USUAL.thin_m
+        assert np.hypot(left[:, 0] - 1.5 - x, left[:, 1] - OPENING_MOST_M - y).min() > THIN_M
 
 
 def test_an_opening_is_tried_again_later() -> None:
     """Somebody stood in the way, perhaps. After each trial it is left alone for twice as long."""
     ground, map_ = driven(along(30))
     before = len(openings(ground, map_)[0])
-    for wait_s in (USUAL.opening_again_s, 2 * USUAL.opening_again_s, 4 * USUAL.opening_again_s):
-        ground.tried(10, 0.5, USUAL.opening_most_m, map_.poses, USUAL)
+    for wait_s in (OPENING_AGAIN_S, 2 * OPENING_AGAIN_S, 4 * OPENING_AGAIN_S):
+        ground.tried(10, 0.5, OPENING_MOST_M, map_.poses)
         ground.now_s += wait_s - 1.0
         assert len(openings(ground, map_)[0]) < before
         ground.now_s += 2.0
@@ -83,9 +91,9 @@ def test_a_far_opening_is_far_from_all_that_is_known() -> None:
     """Driven along a wall of a hall: what the sonar to the left saw of the hall is far, what it saw of a corridor is not."""
     for reach, is_far in ((5.0, True), (3.0, False)):
         ground, map_ = driven(along(60), np.array([reach, *NEAR[1:]], np.float32))
-        rows, places = ground.far_openings(map_, USUAL)  # type: ignore[arg-type]
+        rows, places = ground.far_openings(map_)  # type: ignore[arg-type]
         assert bool(len(rows)) == is_far
-        assert (places[:, 1] > USUAL.far_m).all()
+        assert (places[:, 1] > FAR_M).all()
 
 
 def test_what_was_driven_on_is_no_opening() -> None:
@@ -94,7 +102,7 @@ def test_what_was_driven_on_is_no_opening() -> None:
     _, places = openings(ground, map_)
     assert len(places)
     for place in places:  # outside of the square only
-        assert min(math.dist(place, known) for known in square) > USUAL.thin_m
+        assert min(math.dist(place, known) for known in square) > THIN_M
     ground, map_ = driven(square, NEAR)
     assert not len(openings(ground, map_)[0])
 
@@ -104,18 +112,18 @@ def test_new_ground_is_counted_until_old_ground_is_met() -> None:
     ground, map_ = driven(places, FAR)
     assert ground.new_m == pytest.approx(3.0)
     map_.robot = Pose2(0.0, 0.0, 0.0)
-    ground.step(map_, FAR, 0.3, DT, USUAL)  # type: ignore[arg-type]
+    ground.step(map_, FAR, 0.3, DT)  # type: ignore[arg-type]
     assert ground.new_m == pytest.approx(3.3)  # it was made only a moment ago
-    ground.step(map_, FAR, 0.0, USUAL.old_after_s, USUAL)  # type: ignore[arg-type]
+    ground.step(map_, FAR, 0.0, OLD_AFTER_S)  # type: ignore[arg-type]
     assert ground.new_m == 0.0
     assert ground.last_s[0] == ground.now_s
     assert ground.last_s[1] < 2.0
-    ground.been_at(2.0, 0.0, map_.poses, USUAL)
-    assert (ground.last_s == ground.now_s).tolist() == [abs(x - 2) < USUAL.place_reach_m or x == 0 for x, _ in places]
+    ground.been_at(2.0, 0.0, map_.poses)
+    assert (ground.last_s == ground.now_s).tolist() == [abs(x - 2) < PLACE_REACH_M or x == 0 for x, _ in places]
 
 
 def test_another_map_is_learnt_afresh() -> None:
     ground, _ = driven(along(1500), FAR)  # more than the first rows hold
     assert ground.count == 1500
-    ground.step(HandMadeMap([(0.0, 0.0)], []), FAR, 0.0, DT, USUAL)  # type: ignore[arg-type]
+    ground.step(HandMadeMap([(0.0, 0.0)], []), FAR, 0.0, DT)  # type: ignore[arg-type]
     assert ground.count == 1

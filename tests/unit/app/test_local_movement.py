@@ -26,7 +26,7 @@ def interpreted(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch)
 def sensed(*echoes: tuple[float, float]) -> LocalMovement:
     """Obstacles at these places: bearing and distance."""
     local = LocalMovement(np.array([bearing for bearing, _ in echoes]), USUAL.echo_s)
-    local.sense(np.array([distance for _, distance in echoes], np.float32), STILL, USUAL)
+    local.sense(np.array([distance for _, distance in echoes], np.float32), STILL)
     return local
 
 
@@ -81,19 +81,19 @@ def test_the_free_way_is_the_distance_less_the_clearance() -> None:
 @pytest.mark.usefixtures("interpreted")
 def test_echoes_are_carried_along_and_forgotten() -> None:
     local = LocalMovement(np.array([0.0, 0.7]), USUAL.echo_s)
-    local.sense(np.array([1.2, 5.0], np.float32), STILL, NEAR)
+    local.sense(np.array([1.2, 5.0], np.float32), STILL)
     nothing = np.array([5.0, 5.0], np.float32)
     for _ in range(10):  # half a metre ahead
-        local.sense(nothing, Odometry(0.5, 0.0, DT), NEAR)
+        local.sense(nothing, Odometry(0.5, 0.0, DT))
     assert local.free_way(0.0, NEAR) == pytest.approx(0.5, abs=1e-6)
     for _ in range(10):  # a quarter turn to the left: now it is on the right
-        local.sense(nothing, Odometry(0.0, math.pi / 2, DT), NEAR)
+        local.sense(nothing, Odometry(0.0, math.pi / 2, DT))
     assert local.free_way(-math.pi / 2, NEAR) == pytest.approx(0.5, abs=1e-6)
     assert local.free_way(0.0, NEAR) == pytest.approx(1.6)
     for _ in range(30):  # three seconds later
-        local.sense(nothing, STILL, NEAR)
+        local.sense(nothing, STILL)
     assert local.free_way(-math.pi / 2, NEAR) == pytest.approx(1.6)
-    local.sense(np.array([0.4, 5.0], np.float32), STILL, NEAR)
+    local.sense(np.array([0.4, 5.0], np.float32), STILL)
     assert local.free_way(0.0, NEAR) < 1.0
     local.forget()
     assert local.free_way(0.0, NEAR) == pytest.approx(1.6)
@@ -104,10 +104,10 @@ def test_echoes_are_remembered_for_as_long_at_every_rate(rate: int) -> None:
     local = LocalMovement(np.array([0.0]), 3.0)
     near, nothing, still = np.array([0.8], np.float32), np.array([5.0], np.float32), Odometry(0.0, 0.0, 1 / rate)
     for _ in range(rate):
-        local.sense(near, still, USUAL)
+        local.sense(near, still)
     known = []
     for _ in range(4 * rate):
-        local.sense(nothing, still, USUAL)
+        local.sense(nothing, still)
         known.append(local.free_way(0.0, USUAL) < 1.0)
     assert sum(known) / rate == pytest.approx(3.0, abs=0.11 + 1 / rate)
     assert known == sorted(known, reverse=True)

@@ -6,7 +6,8 @@ import math
 
 import numpy as np
 
-from app.pilot.loop_closing import LoopCloser
+from app.pilot.known_ground import FAR_M
+from app.pilot.loop_closing import LOOP_AGAIN_S, MIDDLE_M, LoopCloser
 from app.pilot.params import PilotParams
 from ratslam_core import Pose2
 
@@ -52,10 +53,10 @@ def test_known_ground_that_is_far_by_the_links_is_driven_along() -> None:
     map_, closer = closing()
     road = map_.poses[closer.road]
     assert road[0, 0] == 0.0  # the nearest of it
-    assert (np.diff(road[:, 0]) > USUAL.far_m).all()
+    assert (np.diff(road[:, 0]) > FAR_M).all()
     assert (road[:, 1] == 0.0).all()
     assert road[-1, 0] > 20.0
-    while map_.robot.x < road[-1, 0] - USUAL.far_m / 2:
+    while map_.robot.x < road[-1, 0] - FAR_M / 2:
         aim, _ = aim_of(closer, map_)
         assert aim is not None
         assert abs(math.atan2(aim[1], aim[0])) < 0.01  # straight on
@@ -71,7 +72,7 @@ def test_along_the_road_the_direction_counts_more_than_the_place() -> None:
     aim, _ = aim_of(closer, map_)
     assert aim is not None
     assert aim[0] > 1.0
-    assert -USUAL.middle_m - 1e-9 <= aim[1] < 0.0
+    assert -MIDDLE_M - 1e-9 <= aim[1] < 0.0
 
 
 def test_a_closed_loop_ends_it() -> None:
@@ -94,5 +95,5 @@ def test_what_the_sonars_do_not_see_is_no_loop() -> None:
 def test_it_is_not_tried_again_at_once() -> None:
     map_, closer = closing()
     closer.stop()
-    assert not chooses(map_, closer, now_s=1000.0 + USUAL.loop_again_s - 1.0)
-    assert chooses(map_, closer, now_s=1000.0 + USUAL.loop_again_s + 1.0)
+    assert not chooses(map_, closer, now_s=1000.0 + LOOP_AGAIN_S - 1.0)
+    assert chooses(map_, closer, now_s=1000.0 + LOOP_AGAIN_S + 1.0)

@@ -170,7 +170,7 @@ def test_the_living_layer_is_the_same_object_until_something_moves(engine: Engin
 
 def test_what_is_shown_is_what_the_world_has_also_after_an_edit(engine: Engine, session: Session) -> None:
     snapshot = shown(session)
-    numbers = ("door_s", "door_tip_m", "patience_least_s", "patience_most_s")
+    numbers = ("door_s", "patience_least_s", "patience_most_s")
     assert snapshot().switches == ("people", "lamps", *numbers, "seed")
     tell(engine, type="put_box", name="crate", x=3.2, y=1.0)
     assert snapshot().switches == ("people", "lamps", *numbers, "boxes", "seed")

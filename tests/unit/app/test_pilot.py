@@ -11,10 +11,11 @@ import pytest
 
 from app.pilot import Pilot
 from app.pilot.behaviours import Behaviour, words_of
+from app.pilot.route_following import LOST_S, REPLAN_S
 from ratslam_core import Odometry
 from sim2d import Simulator
 
-from .pilots import DT, EXPLORING, FAR, STILL, USUAL, Run, a_pilot
+from .pilots import DT, EXPLORING, FAR, STILL, Run, a_pilot
 from .worlds import EXACT, HandMadeMap, chain, room
 
 AHEAD = Odometry(0.3, 0.0, DT)
@@ -105,12 +106,12 @@ def test_an_unreachable_goal_is_explored_for_and_reached_when_a_way_is_found() -
     goal, map_ = len(places) - 1, HandMadeMap(places, [(i, j) for i, j in links if not 2 <= i < 9])  # too wide a gap
     pilot = a_pilot()
     pilot.set_goal(goal)
-    for _ in range(round(USUAL.lost_s / DT) + 10):
+    for _ in range(round(LOST_S / DT) + 10):
         step(pilot, map_, AHEAD)
         assert pilot.doing in EXPLORING
     assert pilot.goal_state == (goal, "unreachable")
     map_.links, map_.link_times = np.array(links), np.full(len(links), 0.8)
-    step(pilot, map_, AHEAD, seconds=2 * USUAL.replan_s)
+    step(pilot, map_, AHEAD, seconds=2 * REPLAN_S)
     assert (pilot.goal_state, pilot.doing) == ((goal, "tracking"), "following the route")
 
 

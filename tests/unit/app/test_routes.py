@@ -14,12 +14,12 @@ from hypothesis import strategies as st
 
 from app.pilot import PilotParams
 from app.pilot.bars import crosses
-from app.pilot.route_following import RouteFollower
+from app.pilot.route_following import COAST_S, LOOK_AROUND_S, LOST_S, NO_HEADWAY_S, REPLAN_S, RouteFollower
 from ratslam_core import Pose2
 from sim2d import Simulator, World
 from sim2d.world.elements import SlowZone
 
-from .pilots import DT, EXPLORING, USUAL, Run, a_pilot, follow
+from .pilots import DT, EXPLORING, Run, a_pilot, follow
 from .worlds import EXACT, HandMadeMap, chain, room
 
 pytestmark = pytest.mark.slow
@@ -70,7 +70,7 @@ def test_the_robot_heads_for_a_point_ahead_on_the_route() -> None:
     map_ = HandMadeMap(*chain((0.0, 0.0), (4.0, 0.0)))
     for heading in (0.0, 1.0, -2.5, math.pi):
         map_.robot = Pose2(1.0, 0.2, heading)
-        target = follow(a_follower(map_), map_, PilotParams(lookahead_m=0.6))
+        target = follow(a_follower(map_), map_)
         assert target is not None
         there = map_.robot.compose(Pose2(*target, 0.0))
         assert there.y == pytest.approx(0.0, abs=1e-9)
@@ -89,14 +89,13 @@ def test_a_brand_new_experience_is_left_by_way_of_a_near_one() -> None:
 
 def test_a_lost_route_is_coasted_on_then_given_up() -> None:
     map_ = HandMadeMap(*chain((0.0, 0.0), (6.0, 0.0)))
-    params = PilotParams(coast_s=4.0)
     follower = a_follower(map_)
     states = []
     for tick in range(400):
         if tick == 20:
             map_.links, map_.link_times = map_.links[:0], map_.link_times[:0]
         map_.robot = Pose2(min(0.03 * tick, 1.5), 0.0, 0.0)
-        target = follow(follower, map_, params)
+        target = follow(follower, map_)
         states.append(follower.state)
         assert (target is None) == (follower.state in ("exploring", "unreachable"))
         progress = follower.progress(map_)  # type: ignore[arg-type]
@@ -104,8 +103,8 @@ def test_a_lost_route_is_coasted_on_then_given_up() -> None:
     seconds = {state: states.count(state) * DT for state in set(states)}
     order = list(dict.fromkeys(states))
     assert order == ["tracking", "coasting", "exploring", "unreachable"]
-    assert seconds["tracking"] + seconds["coasting"] == pytest.approx(2 + 4, abs=USUAL.replan_s + 0.2)
-    assert seconds["exploring"] == pytest.approx(USUAL.lost_s, abs=0.2)
+    assert seconds["tracking"] + seconds["coasting"] == pytest.approx(2 + COAST_S, abs=REPLAN_S + 0.2)
+    assert seconds["exploring"] == pytest.approx(LOST_S, abs=0.2)
 
 
 @pytest.mark.parametrize("seed", range(3))
@@ -113,13 +112,13 @@ def test_a_blocked_way_is_left(seed: int) -> None:
     """The map has a way where there is a wall. The robot looks around instead of pushing for ever."""
     run = a_run((2.0, 0.0, 2.0, 3.0), stops=[(1.0, 0.6), (3.0, 0.6)], seed=seed)
     goal = to_the_end(run)
-    until(run, lambda: run.pilot.goal_state != (goal, "tracking"), 6 * USUAL.no_headway_s)
-    assert len(run.track) >= 10 * USUAL.no_headway_s
+    until(run, lambda: run.pilot.goal_state != (goal, "tracking"), 6 * NO_HEADWAY_S)
+    assert len(run.track) >= 10 * NO_HEADWAY_S
     assert run.pilot.goal_state == (goal, "exploring")
     before = Counter(run.doing)  # it may have to free itself from the corner first
-    until(run, lambda: run.pilot.goal_state != (goal, "exploring"), 6 * USUAL.no_headway_s + 60)
+    until(run, lambda: run.pilot.goal_state != (goal, "exploring"), 6 * NO_HEADWAY_S + 60)
     looked = run.doing - before
-    assert sum(looked[doing] for doing in EXPLORING) > 10 * (USUAL.look_around_s - 4)
+    assert sum(looked[doing] for doing in EXPLORING) > 10 * (LOOK_AROUND_S - 4)
     assert run.pilot.goal_state in ((goal, "tracking"), (goal, "arrived"))  # and tries again
 
 
@@ -245,7 +244,7 @@ def test_who_is_lost_has_not_arrived() -> None:
     follower = RouteFollower(goal)
     for map_.lost, state in ((True, "exploring"), (False, "unreachable")):
         for _ in range(600):
-            assert follower.carried_away(map_, DT, PilotParams())  # type: ignore[arg-type]
+            assert follower.carried_away(map_, DT)  # type: ignore[arg-type]
         assert follower.state == state
 
 

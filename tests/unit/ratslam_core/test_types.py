@@ -9,8 +9,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from disk.parameter import check_ranges, param
 from ratslam_core import ExperienceMapParams, LocalViewParams, Odometry, Pose2, PoseCellParams, wrap_angle
-from ratslam_core.params.parameter import check_ranges, param
 
 places = st.floats(-50, 50)
 poses = st.builds(Pose2, places, places, st.floats(-math.pi, math.pi).map(wrap_angle))
@@ -55,8 +55,8 @@ def test_odometry_is_checked() -> None:
 
 @dataclass(frozen=True)
 class Mixed:
-    size: int = param(5, low=1, high=9, meaning="a size", source="test")
-    way: str = param("left", choices=("left", "right"), meaning="a way", source="test")
+    size: int = param(5, "a size", 1, 9)
+    way: str = param("left", "a way", choices=("left", "right"))
     note: str = "free text"
 
     def __post_init__(self) -> None:
@@ -67,20 +67,20 @@ class Mixed:
     ("of", "values", "message"),
     [
         (PoseCellParams, {"n_x": 7}, r"n_x must be between 8 and 1000 cells, got 7"),
-        (PoseCellParams, {"n_x": 20.0}, r"n_x must be int, got 20\.0"),
-        (PoseCellParams, {"n_x": True}, r"n_x must be int, got True"),
+        (PoseCellParams, {"n_x": 20.0}, r"n_x must be a whole number, got 20\.0"),
+        (PoseCellParams, {"n_x": True}, r"n_x must be a number, got True"),
         (PoseCellParams, {"n_x": 1000, "n_y": 1000, "n_theta": 68}, r"at most 67108864 cells together, got 68000000"),
-        (PoseCellParams, {"inhibit": math.nan}, r"inhibit must be between 0\.0 and 0\.02, got nan"),
-        (PoseCellParams, {"carry": 1}, r"carry must be bool, got 1"),
+        (PoseCellParams, {"inhibit": math.nan}, r"inhibit must be between 0 and 0\.02, got nan"),
+        (PoseCellParams, {"carry": 1}, r"carry must be true or false, got 1"),
         (
             PoseCellParams,
             {"carry": np.zeros((60, 60))},
-            r"^carry must be bool, got array\(\[\[.*\]\], shape=\(60, 60\)\)$",
+            r"^carry must be true or false, got array\(\[\[.*\]\], shape=\(60, 60\)\)$",
         ),
         (LocalViewParams, {"shift": 6}, r"shift must be between 0 and 5 columns, got 6"),
-        (LocalViewParams, {"match_threshold": "8"}, r"match_threshold must be float, got '8'"),
-        (ExperienceMapParams, {"correction": -0.1}, r"correction must be between 0\.0 and 0\.95, got -0\.1"),
-        (ExperienceMapParams, {"zone_xy": math.inf}, r"zone_xy must be between 0\.5 and 20\.0 cells, got inf"),
+        (LocalViewParams, {"match_threshold": "8"}, r"match_threshold must be a number, got '8'"),
+        (ExperienceMapParams, {"correction": -0.1}, r"correction must be between 0 and 0\.95, got -0\.1"),
+        (ExperienceMapParams, {"zone_xy": math.inf}, r"zone_xy must be between 0\.5 and 20 cells, got inf"),
         (Mixed, {"size": 10}, "size must be between 1 and 9, got 10"),
         (Mixed, {"way": "up"}, "way must be one of 'left', 'right', got 'up'"),
     ],

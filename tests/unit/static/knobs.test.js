@@ -17,6 +17,7 @@ test("a parameter is called by its last name, in the group of the others", () =>
 test("a search means a parameter when each of its words is somewhere in it", () => {
   for (const search of ["", "cruise", "CRUISE speed", "cruise_speed", "m/s", "drives", "fast pilot"])
     assert.ok(means(SPEED, search), search);
+  assert.ok(means({ ...SPEED, symbol: "σ_ε" }, "sigma"), "a symbol as people type it");
   for (const search of ["cruise map", "rad", "0.35"]) assert.ok(!means(SPEED, search), search);
 });
 

@@ -274,7 +274,8 @@ def test_every_parameter_explains_itself_and_has_symbol_unit_and_default() -> No
     assert steps == [1, pytest.approx(0.002), pytest.approx(0.001), None]
     knobs = {knob["name"]: knob for knob in told(SNAPSHOT, "tune")[0]["knobs"]}
     assert knobs.keys() == by_name.keys()
-    assert [knobs["pilot.speed"][told] for told in ("symbol", "unit", "default", "live")] == ["v", "m/s", 0.3, True]
+    told_of = ("symbol", "unit", "default", "live", "lecture", "meaning")
+    assert [knobs["pilot.speed"][name] for name in told_of] == ["v", "m/s", 0.3, True, False, "Cruising speed."]
 
 
 @given(st.floats(1e-6, 1e6), st.floats(1e-6, 1e6))

@@ -1,4 +1,4 @@
-// Tune: every parameter as a control, by group; a search finds it by any of its words.
+// Tune: the dozen that a lecture turns, then every parameter as a control, by section; a search finds it by any of its words.
 
 import { icon, labelled, make, say } from "../ui/elements.js";
 
@@ -6,7 +6,8 @@ import { icon, labelled, make, say } from "../ui/elements.js";
  * A parameter as the server sends it (web/panel/tune.py).
  * @typedef {{
  *   name: string, value: number | boolean | string, default: number | boolean | string, symbol: string, unit: string,
- *   low: number | null, high: number | null, step: number | null, choices: string[], live: boolean, hint: string,
+ *   low: number | null, high: number | null, step: number | null, choices: string[], live: boolean, lecture: boolean,
+ *   meaning: string, hint: string,
  * }} Parameter
  */
 
@@ -32,13 +33,30 @@ export function grouped(parameters) {
   return groups;
 }
 
+/** @type {Record<string, string>} as people type them */
+const GREEK = {
+  α: "alpha",
+  β: "beta",
+  γ: "gamma",
+  δ: "delta",
+  ε: "epsilon",
+  η: "eta",
+  θ: "theta",
+  μ: "mu",
+  σ: "sigma",
+  τ: "tau",
+  φ: "phi",
+  ω: "omega",
+};
+
 /**
  * Whether a search finds this parameter: each word searched for is in its name, symbol, unit or meaning.
  * @param {Pick<Parameter, "name" | "symbol" | "unit" | "hint">} parameter
  * @param {string} search
  */
 export function means({ name, symbol, unit, hint }, search) {
-  const text = `${name} ${name.replaceAll("_", " ")} ${symbol} ${unit} ${hint}`.toLowerCase();
+  const spelt = [...symbol].map((letter) => GREEK[letter] ?? letter).join("");
+  const text = `${name} ${name.replaceAll("_", " ")} ${symbol} ${spelt} ${unit} ${hint}`.toLowerCase();
   return search
     .toLowerCase()
     .split(/\s+/)
@@ -56,10 +74,10 @@ export const isDefault = (parameter) => parameter.value === parameter.default;
 
 let count = 0;
 
-/** One parameter as a control: its name, symbol and unit, its value, and a way back to the default. */
+/** One parameter as a control: its name, symbol and unit, its value, and a way back to the default; its meaning, if `told`. */
 export class Knob {
   /** @param {Parameter} parameter @param {import("./panel.js").Ask} ask */
-  constructor(parameter, ask) {
+  constructor(parameter, ask, told = false) {
     this.ask = ask;
     this.parameter = parameter;
     /** @type {Parameter["value"] | undefined} the newest value chosen while an answer is awaited */
@@ -77,6 +95,7 @@ export class Knob {
     this.input.setAttribute("aria-describedby", hint.id);
     const label = make("label", {}, words(parameter), this.input);
     this.box = make("div", { className: "knob", title: parameter.hint }, label, this.reset, hint);
+    if (told) this.box.append(make("p", { ariaHidden: "true", textContent: parameter.meaning })); // the hint has it, too
     this.show(parameter);
   }
 
@@ -114,13 +133,11 @@ export class Knob {
 /** @param {Parameter} parameter */
 function words({ name, symbol, unit, live }) {
   const parts = [make("span", { textContent: shortName(name) })];
-  if (symbol) {
-    const [base, below] = printed(symbol);
-    parts.push(make("i", {}, base, ...(below ? [make("sub", { textContent: below })] : [])));
-  }
   if (unit) parts.push(make("small", { textContent: unit }));
   if (!live) parts.push(labelled("takes effect at reset", make("small", { textContent: "↻", role: "img" })));
-  return make("span", { className: "words" }, ...parts.flatMap((part) => [part, " "]));
+  const [base, below] = printed(symbol);
+  const sign = make("i", {}, base, ...(below ? [make("sub", { textContent: below })] : []));
+  return make("span", { className: "words" }, ...(symbol ? [sign, " "] : []), ...parts.flatMap((part) => [part, " "]));
 }
 
 /** @param {Parameter} parameter */
@@ -138,24 +155,28 @@ export class TuneTab {
   /** @param {import("./panel.js").Ask} ask */
   constructor(ask) {
     this.ask = ask;
-    this.search = make("input", {
-      type: "search",
-      placeholder: "Search: name, symbol, unit, meaning",
-      autocomplete: "off",
-    });
+    this.search = make("input", { type: "search", autocomplete: "off" });
     this.search.setAttribute("aria-label", "Search the parameters");
     this.search.addEventListener("input", () => this.find());
     this.found = make("p", { className: "quiet" });
     this.found.setAttribute("role", "status");
+    this.dozen = make("section", { className: "dozen" });
     this.groups = make("div");
+    const all = make("div", { className: "all" }, this.dozen, this.groups);
     this.hint = make("p", { className: "hint", textContent: POINT });
     this.hint.setAttribute("aria-hidden", "true"); // each control has a description of its own
     const head = make("div", { className: "search" }, this.search, this.found);
-    this.box = make("div", { className: "tune" }, head, this.groups, this.hint);
+    this.box = make("div", { className: "tune" }, head, all, this.hint);
     for (const kind of /** @type {const} */ (["pointerover", "focusin"]))
-      this.groups.addEventListener(kind, (event) => this.explain(/** @type {Element} */ (event.target)));
+      all.addEventListener(kind, (event) => this.explain(/** @type {Element} */ (event.target)));
     /** @type {Map<string, Knob>} */
     this.knobs = new Map();
+    /** @type {Knob[]} those of the dozen, which have one in their section, too */
+    this.lecture = [];
+    /** @type {Map<string, HTMLElement>} how many of a section are not at their default */
+    this.changed = new Map();
+    /** @type {HTMLElement[]} how many each section has, of which a search finds so many */
+    this.sizes = [];
     this.sought = ""; // which one is to have the focus as soon as it is there
   }
 
@@ -163,14 +184,27 @@ export class TuneTab {
   tune({ knobs }) {
     if (String(knobs.map(({ name }) => name)) !== String([...this.knobs.keys()])) this.build(knobs);
     for (const parameter of knobs) this.knobs.get(parameter.name)?.show(parameter);
+    for (const knob of this.lecture) knob.show(this.knobs.get(knob.parameter.name)?.parameter ?? knob.parameter);
+    for (const [group, members] of grouped(knobs)) {
+      const changed = members.filter((parameter) => !isDefault(parameter)).length;
+      this.changed.get(group)?.replaceChildren(changed ? `${changed} changed` : "");
+    }
   }
 
   /** @param {Parameter[]} parameters */
   build(parameters) {
     this.knobs = new Map(parameters.map((parameter) => [parameter.name, new Knob(parameter, this.ask)]));
-    const drawn = [...grouped(parameters)].map(([group, members], k) => {
+    this.lecture = parameters.filter(({ lecture }) => lecture).map((parameter) => new Knob(parameter, this.ask, true));
+    this.dozen.replaceChildren(make("h2", { textContent: "For a lecture" }), ...this.lecture.map(({ box }) => box));
+    this.search.placeholder = `Search all ${parameters.length}: name, symbol, meaning`;
+    this.sizes = [];
+    const drawn = [...grouped(parameters)].map(([group, members]) => {
+      const changed = make("small", { className: "changed" });
+      this.changed.set(group, changed);
+      const size = make("small");
+      this.sizes.push(size);
       const boxes = members.flatMap(({ name }) => this.knobs.get(name)?.box ?? []);
-      return make("details", { open: k === 0 }, make("summary", { textContent: group }), ...boxes);
+      return make("details", {}, make("summary", {}, make("span", { textContent: group }), changed, size), ...boxes);
     });
     this.groups.replaceChildren(...drawn);
     this.find();
@@ -178,16 +212,19 @@ export class TuneTab {
     this.sought = "";
   }
 
-  /** Shows what the search finds; without a search, groups are open or closed as people left them. */
+  /** Shows what the search finds, without the dozen, of which each is in its section; without a search, sections are open or closed as people left them. */
   find() {
     const search = this.search.value.trim();
+    this.dozen.hidden = Boolean(search) || !this.lecture.length;
     let count = 0;
     for (const { parameter, box } of this.knobs.values()) {
       box.hidden = !means(parameter, search);
       count += Number(!box.hidden);
     }
-    for (const group of this.groups.querySelectorAll("details")) {
-      group.hidden = !group.querySelector(".knob:not([hidden])");
+    for (const [k, group] of this.groups.querySelectorAll("details").entries()) {
+      const [all, found] = [".knob", ".knob:not([hidden])"].map((those) => group.querySelectorAll(those).length);
+      group.hidden = found === 0;
+      say(this.sizes[k], search ? `${found} of ${all}` : String(all));
       if (search) {
         group.dataset.was ??= String(group.open);
         group.open = true;
@@ -197,7 +234,7 @@ export class TuneTab {
       }
     }
     const words = count === 1 ? "1 parameter" : `${count} parameters`;
-    say(this.found, search ? (count ? words : `nothing is called “${search}”`) : words);
+    say(this.found, search && (count ? words : `nothing is called “${search}”`));
   }
 
   /** Shows one parameter alone, and puts the focus on it. @param {string} name */
@@ -218,7 +255,7 @@ export class TuneTab {
   /** @param {Element} target */
   explain(target) {
     const box = target.closest(".knob");
-    const knob = [...this.knobs.values()].find((one) => one.box === box);
+    const knob = [...this.lecture, ...this.knobs.values()].find((one) => one.box === box);
     if (knob) say(this.hint, knob.parameter.hint);
   }
 
