@@ -246,6 +246,6 @@ def test_a_state_of_an_earlier_program_has_no_brain_in_front_and_is_read(tmp_pat
     save_state(encode((*texts, session)), tmp_path / "state.npz")
     assert load_session(tmp_path / "state.npz").state_hash() == session.state_hash()
     with pytest.raises(
-        ValueError, match="state.npz is no brain that can be taken back: a snapshot must hold a RatSlam"
+        ValueError, match=r"state.npz is no brain that can be taken back: a snapshot must hold a RatSlam"
     ):
         load_its_brain(tmp_path / "state.npz")
