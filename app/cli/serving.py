@@ -72,7 +72,7 @@ def _serve(serving: Serving, first: First, compiling: Compiling) -> int:
     from app.startup.waking import Waking
     from ratslam_core import load_brain
     from web import messages as m
-    from web.http.kept_offer import Offered
+    from web.http.brains import Offered
     from web.http.server import CannotListen, Dashboard
     from web.viewer.viewer import Viewers
 
