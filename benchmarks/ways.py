@@ -376,8 +376,8 @@ def house(root: Path) -> dict[str, Any]:
 
 
 def _entries(folder: Path) -> int:
-    """Files of code in a folder; on the page a feature has its styles beside its script."""
-    return sum(path.suffix in (".py", ".js", ".css", ".html") for path in folder.iterdir())
+    """Files of code in a folder; on the page what is shown has its styles beside its script."""
+    return sum(path.suffix in (".py", ".js", ".css", ".html", ".j2") for path in folder.iterdir())
 
 
 def _lines(path: Path) -> int:
