@@ -71,7 +71,7 @@ def _serve(serving: Serving, first: First, compiling: Compiling) -> int:
     from app.session_snapshot import load_its_brain
     from app.startup.waking import Waking
     from web import messages as m
-    from web.http.kept_offer import Offered
+    from web.http.brains import Offered
     from web.http.server import CannotListen, Dashboard
     from web.viewer.viewer import Viewers
 

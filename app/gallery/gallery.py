@@ -21,7 +21,7 @@ from app.protocol.experiment import EngineName, Experiment, Score, catalogue, fi
 from app.protocol.steps import Drive, Repeat, Step, Tag, place_of
 from sim2d import World
 from sim2d.importers import open_world
-from web.http.experiments import Axis, Card, Cell, Detail, Dot, Plan, Results
+from web.http.gallery import Axis, Card, Cell, Detail, Dot, Plan, Results
 
 PICTURES = Path(__file__).parents[2] / "docs" / "pictures" / "experiments"  # those that come with the program
 FIGURES = "figures"  # the folder beside the store for those that are drawn here

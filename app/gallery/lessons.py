@@ -12,7 +12,7 @@ from app.config import Config
 from app.protocol.lesson import Formula, Lesson, all_lessons, catalogue, own_lessons
 from app.protocol.performance import shown_s
 from sim2d.importers import open_world
-from web.http.lessons import FormulaText, LessonCard, LessonText, LookText, Question, SymbolText, TryText
+from web.http.gallery import FormulaText, LessonCard, LessonText, LookText, Question, SymbolText, TryText
 
 MATHML = "http://www.w3.org/1998/Math/MathML"
 

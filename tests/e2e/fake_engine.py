@@ -26,7 +26,7 @@ from web.themes import Theme
 from web.viewer.camera_views import Camera
 from web.viewer.viser_server import guarded_server
 
-BOXES = 50  # `WHOLE` of frames.js, and some more
+BOXES = 50  # `WHOLE` of viser_client.js, and some more
 
 
 class FakeEngine(threading.Thread):

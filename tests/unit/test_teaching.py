@@ -38,7 +38,7 @@ def the_labels() -> set[str]:
             said |= set(re.findall(r'"([^"\n]+)"', script.read_text("utf-8")))
     said |= {pair.title for pair in pairs_beside(Config())} | set(TABS)
     said |= {each.button or "" for lesson in LESSONS.values() for each in lesson.sandbox}
-    return said | {f"Go on without {words}" for words in ("this view", "these views")}  # report.js
+    return said | {f"Go on without {words}" for words in ("this view", "these views")}  # inspect.js
 
 
 def unknown(code: str) -> bool:

@@ -17,20 +17,17 @@ from starlette.exceptions import HTTPException
 from starlette.requests import ClientDisconnect
 
 from web.http.asking import Submit, body_of, json_response, told
-from web.http.brain_files import BrainDownload, unpacked
+from web.http.brains import BrainDownload, Offered, add_kept_offer, unpacked
 from web.http.class_door import Classroom, add_classroom
 from web.http.commands import READER, CommandAccepted, Declined, Malformed, Problem, check, problem, read_object, wrong
-from web.http.experiments import Gallery, add_experiments
 from web.http.export import Exports, add_exports
-from web.http.kept_offer import Offered, add_kept_offer
-from web.http.lessons import Lessons, add_lessons
+from web.http.gallery import Gallery, Lessons, add_experiments, add_lessons
 from web.http.pictures import add_pictures, add_stage_picture
-from web.http.places import add_places
 from web.http.proxy import PAGE_ID, Cameras, ViewersLike, ViserProxy, spoken
 from web.http.recordings import Opener, add_recordings
 from web.http.security import MAX_BRAIN_BYTES, NO, Guard, Limits, comes_from_class, looks_on
 from web.http.situations import Situations, add_situations
-from web.http.state import experience_fields, title, to_json
+from web.http.state import experience_fields, places_of, title, to_json
 from web.http.stream import Stream
 from web.http.worlds import add_worlds
 from web.latest import Latest
@@ -82,7 +79,7 @@ def create_app(
     )
     _add_state(app, latest, stream)
     _add_experience(app, submit)
-    add_places(app, latest)
+    _add_places(app, latest)
     _add_brain(app, latest, submit)
     add_kept_offer(app, offered, latest, submit)
     _add_commands(app, submit)
@@ -121,6 +118,18 @@ def _add_state(app: FastAPI, latest: Latest[Snapshot], stream: Stream) -> None:
             words = f"the engine has not finished its first tick yet ({latest.waking}); try again in a moment"
             return json_response(problem(words), 503)
         return json_response(stream.text.full(snapshot) if full else stream.text.light(snapshot))
+
+
+def _add_places(app: FastAPI, latest: Latest[Snapshot]) -> None:
+    @app.get("/api/places", tags=["state"], responses={503: {"model": Problem}})
+    async def places() -> Response:
+        """What a goal can be: places with a name, those of the office, and all experiences. Map frame, metres; `seconds`:
+        the quickest way from the robot to there (to the goal, while there is one), null: no way is known; `why`: why a
+        place of the office cannot be one, null: it can."""
+        _, snapshot = latest.get()
+        if snapshot is None:
+            return json_response(problem(f"the engine has not finished its first tick yet ({latest.waking})"), 503)
+        return json_response(to_json(places_of(snapshot)))
 
 
 def _add_experience(app: FastAPI, submit: Submit) -> None:

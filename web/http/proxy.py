@@ -22,12 +22,11 @@ from starlette.responses import Response
 from starlette.websockets import WebSocket, WebSocketDisconnect, WebSocketState
 from websockets.asyncio.client import ClientConnection
 
-from web.http.security import is_look
 from web.switches import Switches
 from web.themes import Theme, Themes
 from web.viewer.camera_views import Camera
 from web.viewer.pointer import NOT_THERE
-from web.viewer.viser_server import SECRET_HEADER, client_page
+from web.viewer.viser_server import SECRET_HEADER, client_page, is_look
 
 VIEWS = ("all", "office", "pose", "map")
 PROTOCOL = re.compile(r"viser-v[\w.+-]{1,32}", re.ASCII)  # the client's version; viser refuses any but its own

@@ -10,9 +10,7 @@ from __future__ import annotations
 import time
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
-import msgspec
 from starlette.datastructures import Headers, MutableHeaders
 from starlette.requests import HTTPConnection
 from starlette.responses import Response
@@ -241,13 +239,3 @@ def must_look(kind: object) -> None:
     """Raises Declined when a message of this type is more than a look."""
     if kind not in LOOKS:
         raise Declined.of(403, NO)
-
-
-def is_look(message: bytes) -> bool:
-    """Whether a message of viser's client only tells where its own camera stands. It is read with viser's own reader, so that
-    viser can understand nothing else by it."""
-    try:
-        said: dict[str, Any] | list[Any] | str | float | None = msgspec.msgpack.decode(message)
-    except (msgspec.DecodeError, UnicodeDecodeError):
-        return False
-    return isinstance(said, dict) and said.get("type") == "ViewerCameraMessage"

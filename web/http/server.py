@@ -18,6 +18,7 @@ import uvicorn
 from starlette.types import ASGIApp
 
 from web.http.api import create_app
+from web.http.brains import Offered
 from web.http.class_door import ClassDoor, Classroom
 from web.http.connections import (
     MAX_HEADER_BYTES,
@@ -30,10 +31,8 @@ from web.http.connections import (
     listening_socket,
     places,
 )
-from web.http.experiments import Gallery
 from web.http.export import Exports
-from web.http.kept_offer import Offered
-from web.http.lessons import Lessons
+from web.http.gallery import Gallery, Lessons
 from web.http.proxy import ViewersLike
 from web.http.recordings import Opener
 from web.http.security import Guard

@@ -9,6 +9,7 @@ import math
 from dataclasses import asdict
 from typing import Any
 
+import numpy as np
 import orjson
 
 from web.messages import (
@@ -17,6 +18,7 @@ from web.messages import (
     Event,
     ExperienceReport,
     Goal,
+    KnownPlace,
     LivingLayer,
     MapLayer,
     OfficeEdition,
@@ -323,4 +325,31 @@ def experience_fields(report: ExperienceReport) -> dict[str, Any]:
         "first_s": report.times.first_s,
         "last_s": report.times.last_s,
         "visits": report.times.visits,
+    }
+
+
+def _named(place: KnownPlace, layer: MapLayer) -> dict[str, Any]:
+    """A place of the office by its name. It can be gone to once the map has something there; `why` says why not."""
+    if place.map_xy is None or not len(layer.ids):
+        why = "the robot has not been near it yet"
+        return {"name": place.name, "experience": None, "x": None, "y": None, "why": why}
+    x, y = place.map_xy
+    nearest = int(np.hypot(*(layer.xy - np.array([x, y])).T).argmin())
+    return {"name": place.name, "experience": int(layer.ids[nearest]), "x": x, "y": y, "why": None}
+
+
+def places_of(snapshot: Snapshot) -> dict[str, Any]:
+    """`/api/places`, for a list to choose from without seeing the map."""
+    layer, times = snapshot.map, snapshot.times
+    here = snapshot.estimate
+    seconds = times.seconds if len(times.seconds) == len(layer.ids) else [math.inf] * len(layer.ids)
+    return {
+        "robot": {"x": here.x, "y": here.y, "heading_rad": here.heading_rad},
+        "to_goal": times.to_goal,
+        "tags": [{"name": tag.name, "experience": tag.experience, "x": tag.x, "y": tag.y} for tag in snapshot.tags],
+        "named": [_named(place, layer) for place in snapshot.places],
+        "experiences": [
+            {"id": int(id_), "x": float(x), "y": float(y), "seconds": float(s) if math.isfinite(s) else None}
+            for id_, (x, y), s in zip(layer.ids, layer.xy, seconds, strict=True)
+        ],
     }

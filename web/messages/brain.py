@@ -7,6 +7,7 @@ The map frame is the experience map's own (first experience at its origin); pose
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Literal
@@ -81,6 +82,9 @@ class Snap:
     causes: tuple[SnapCause, ...] = ()  # those that injected most first
 
 
+FLAT = (0.5, 1.0, 1.0)  # theta', y', x': one layer counts as half a cell
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class PoseCellLayer:
     shape: tuple[int, int, int]  # n_theta, n_y, n_x
@@ -93,6 +97,17 @@ class PoseCellLayer:
     last_snap: Snap | None
     total: float = 1.0  # of all activity
     least: float = 0.0  # of the active cells
+
+    def owners(self) -> NDArray[np.int64]:
+        """(k,) rows of `packets`: the packet nearest to each cell, around the torus; 0 when there are no packets."""
+        if not self.packets:
+            return np.zeros(len(self.cells), np.int64)
+        turn = self.shape[0] / math.tau
+        centres = np.array([[p.heading_rad % math.tau * turn, p.y, p.x] for p in self.packets])
+        gaps = np.abs(self.cells[:, None] - centres[None])
+        size = np.array(self.shape)
+        gaps = np.minimum(gaps % size, -gaps % size)
+        return ((gaps * FLAT) ** 2).sum(2).argmin(1)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from web.cell_owners import owners
 from web.messages import Parameter, PoseCellLayer, Senses, Snapshot, TickWalk, Timing
 from web.panel.part import Content
 
@@ -93,7 +92,7 @@ def from_above(layer: PoseCellLayer) -> tuple[NDArray[np.uint32], NDArray[np.uin
     """Each packet's activity summed over theta': places (y' n_x + x'), the packet's rank, and the share of the strongest."""
     _, n_y, n_x = layer.shape
     place = layer.cells[:, 1] * n_x + layer.cells[:, 2]
-    rank = np.minimum(owners(layer), 255)
+    rank = np.minimum(layer.owners(), 255)
     pairs, row = np.unique(rank * (n_y * n_x) + place, return_inverse=True)
     sums = np.bincount(row.ravel(), weights=layer.activity, minlength=len(pairs))
     share = np.rint(sums / max(float(sums.max(initial=0.0)), 1e-12) * MOST)

@@ -1,17 +1,16 @@
 // The page: puts the parts together and turns clicks and keys into commands. The server is the only truth.
 
 import { $, find } from "./ui/elements.js";
-import { BesideStrip } from "./brains/beside.js";
+import { BesideStrip } from "./viewer/beside.js";
 import { FirstMinuteCard, Help } from "./header/help.js";
-import { HandDrive } from "./ui/drive.js";
+import { HandDrive, actOf, Keys } from "./ui/keys.js";
 import { Aids, Presenter } from "./viewer/aids.js";
 import { Editor } from "./editor/editor.js";
-import { Exports } from "./share/export.js";
-import { Files } from "./worlds/files.js";
+import { Exports, Keeping } from "./share/keeping.js";
+import { Files, Source } from "./worlds/files.js";
 import { Gallery, Watched } from "./experiments/gallery.js";
-import { KeptBrain, takeBrainFiles } from "./brains/kept_brain.js";
+import { KeptBrain, takeBrainFiles } from "./worlds/kept_brain.js";
 import { closeOpenMenu, Header, Theming } from "./header/header.js";
-import { actOf, Keys } from "./ui/keys.js";
 import { Lesson } from "./lessons/lesson.js";
 import { LessonList } from "./lessons/list.js";
 import { Connection, WATCHER_KEYS, newId, onlyLook, takeNoFiles } from "./net/connection.js";
@@ -19,10 +18,8 @@ import { dismissToast, sentence, toast } from "./ui/words.js";
 import { NewWorld, OwnWorlds } from "./worlds/own_worlds.js";
 import { VIEWS } from "./shared.js";
 import { PlaceList, Speaker } from "./ui/access.js";
-import { Keeping } from "./share/keeping.js";
 import { Panel } from "./panel/panel.js";
 import { RunUntilMenu } from "./timeline/tools.js";
-import { Source } from "./worlds/recordings.js";
 import { Viewer } from "./viewer/viewer.js";
 import { Timeline } from "./timeline/timeline.js";
 

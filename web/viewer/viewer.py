@@ -21,15 +21,13 @@ from web.latest import Latest
 from web.messages import Accepted, Command, Refused, Snapshot
 from web.switches import Switches
 from web.themes import Look, Theme
-from web.viewer.beside import Beside
 from web.viewer.camera_views import VIEWS, Camera, ray_through
 from web.viewer.cameras import Cameras, Robots
-from web.viewer.judged_layers import JudgedLayers
-from web.viewer.layers import Layers
+from web.viewer.layers import JudgedLayers, Layers
 from web.viewer.pointer import NOT_THERE, OTHER_BRAIN, Answer, Click, Drag, Pointer, ask
 from web.viewer.primitives.palette import Palette, palette_of
 from web.viewer.replay import Replay
-from web.viewer.scenery import Scenery
+from web.viewer.scenery import Beside, Scenery
 from web.viewer.viser_server import guarded_server
 
 DragEvent = viser.SceneNodeDragEvent[viser.MeshHandle]

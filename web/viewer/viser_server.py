@@ -20,6 +20,7 @@ from collections.abc import Generator
 from http import HTTPStatus
 from typing import Any
 
+import msgspec
 import rich  # viser's printer
 import viser
 import websockets.asyncio.server as serving
@@ -66,6 +67,16 @@ def knows(request: Request, secret: str) -> bool:
     """Whether a request carries the secret, once. The comparison takes as long for a near miss as for any other."""
     given = request.headers.get_all(SECRET_HEADER)
     return len(given) == 1 and secrets.compare_digest(given[0].encode(errors="surrogateescape"), secret.encode())
+
+
+def is_look(message: bytes) -> bool:
+    """Whether a message of viser's client only tells where its own camera stands. It is read with viser's own reader, so that
+    viser can understand nothing else by it."""
+    try:
+        said: dict[str, Any] | list[Any] | str | float | None = msgspec.msgpack.decode(message)
+    except (msgspec.DecodeError, UnicodeDecodeError):
+        return False
+    return isinstance(said, dict) and said.get("type") == "ViewerCameraMessage"
 
 
 def _hear_little(handlers: WebsockMessageHandler) -> None:

@@ -13,7 +13,7 @@ from app.gallery.gallery import EARLIER, PUBLISHED, QUICK, StoredGallery
 from app.protocol.course import Moment
 from app.protocol.experiment import chosen_trial, find_experiment, first_levels
 from app.protocol.trial import Result, Trial
-from web.http.experiments import Card, Cell, Results
+from web.http.gallery import Card, Cell, Results
 
 from .trials_to_watch import SHORT
 

@@ -11,7 +11,7 @@ import {
   MEANS,
   odometryWords,
   sinceWhen,
-} from "../../../web/static/brains/beside.js";
+} from "../../../web/static/viewer/beside.js";
 import { ADDITIONS } from "../../../web/static/shared.js";
 
 const names = ADDITIONS.map(({ name }) => name);

@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { takeClicks } from "../../../web/static/viewer/fingers.js";
+import { takeClicks } from "../../../web/static/viewer/viser_client.js";
 
 const CANVAS = { tagName: "CANVAS", getBoundingClientRect: () => ({ left: 10, top: 20, width: 400, height: 200 }) };
 

@@ -2,11 +2,10 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import * as lessons from "../../../web/static/lessons/words.js";
-import { outline, turned } from "../../../web/static/lessons/question.js";
+import * as lessons from "../../../web/static/lessons/question.js";
+import { outline, turned, voteWords } from "../../../web/static/lessons/question.js";
 import { cardFacts, chapters, linked, nextAfter } from "../../../web/static/lessons/list.js";
 import { CHOICES, ending } from "../../../web/static/timeline/tools.js";
-import { voteWords } from "../../../web/static/lessons/words.js";
 import { segment } from "./made.js";
 
 /** @param {string} name @param {Partial<LessonCard>} [other] @returns {LessonCard} */

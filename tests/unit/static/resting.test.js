@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { restBetweenFrames } from "../../../web/static/viewer/frames.js";
+import { restBetweenFrames } from "../../../web/static/viewer/viser_client.js";
 
 const FRAME_MS = 16;
 

@@ -3,8 +3,8 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { away } from "../../../web/static/editor/geometry.js";
-import { pinched } from "../../../web/static/viewer/fingers.js";
-import { ViewBox } from "../../../web/static/editor/svg_view.js";
+import { pinched } from "../../../web/static/viewer/viser_client.js";
+import { ViewBox } from "../../../web/static/editor/plan.js";
 import { chance, path, points, segment } from "./made.js";
 
 const RING = path("-2 1, 8 1, 8 6, -2 6");

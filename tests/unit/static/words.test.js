@@ -7,7 +7,7 @@ import { choices, Speech, whereabouts } from "../../../web/static/ui/access.js";
 import * as said from "../../../web/static/ui/words.js";
 import { plainly } from "../../../web/static/editor/world_client.js";
 import { freeName } from "../../../web/static/worlds/own_worlds.js";
-import { experiences, keptWords } from "../../../web/static/brains/kept_brain.js";
+import { experiences, keptWords } from "../../../web/static/worlds/kept_brain.js";
 
 test("a sentence begins with a capital letter and has one full stop; counts and sizes are in words", () => {
   assert.deepEqual(["x is wrong", "Why?", "so."].map(said.sentence), ["X is wrong.", "Why?", "So."]);

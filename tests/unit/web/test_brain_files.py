@@ -15,9 +15,9 @@ import pytest
 from disk import archive
 from ratslam_core import Odometry, RatSlam, take_snapshot
 from tests.unit.web.doubles import House
-from web.http import brain_files
+from web.http import brains
 from web.http.asking import NoAnswer
-from web.http.brain_files import BrainDownload, packed, unpacked
+from web.http.brains import BrainDownload, packed, unpacked
 from web.http.security import MAX_BRAIN_BYTES
 from web.messages import Accepted, ReadBrain, Refused, UseBrain
 
@@ -125,7 +125,7 @@ def test_who_asks_while_a_brain_is_made_gets_the_same_and_who_comes_later_anothe
         while not answers:
             await asyncio.sleep(0)
         with monkeypatch.context() as hasty:
-            hasty.setattr(brain_files, "FRESH_S", -1.0)  # so that the file is already too old
+            hasty.setattr(brains, "FRESH_S", -1.0)  # so that the file is already too old
             with pytest.raises(NoAnswer, match="is being sent to somebody") as refused:
                 await download.answer({})
         assert refused.value.status == 429

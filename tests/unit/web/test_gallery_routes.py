@@ -10,7 +10,7 @@ from starlette.testclient import TestClient
 
 from app.gallery.lessons import StoredLessons
 from tests.unit.web.doubles import House, house
-from web.http.experiments import Axis, Card, Cell, Detail, Dot, Plan, Results
+from web.http.gallery import Axis, Card, Cell, Detail, Dot, Plan, Results
 from web.http.security import Bucket
 from web.messages import BeginLesson, Predict, Refused, WatchExperiment
 

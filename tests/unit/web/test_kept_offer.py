@@ -17,9 +17,9 @@ from ratslam_core import RatSlam, load_brain
 from sim2d import load_world
 from tests.fake_snapshots import fake_snapshot
 from tests.unit.web.doubles import House, StubEngine, house
-from web.http import kept_offer
+from web.http import brains
 from web.http.asking import NoAnswer
-from web.http.kept_offer import KeptOffer, Offered
+from web.http.brains import KeptOffer, Offered
 from web.latest import Latest
 from web.messages import Accepted, GoOn, ReadFiled, Refused, Snapshot, UseBrain
 
@@ -107,7 +107,7 @@ def test_a_run_that_was_cut_off_goes_on() -> None:
 
 def test_a_run_that_nobody_waits_for_is_given_up(monkeypatch) -> None:
     """The request is one whose page has gone; what runs in the thread hears of it at its next tick."""
-    monkeypatch.setattr(kept_offer, "LOOK_S", 0.01)
+    monkeypatch.setattr(brains, "LOOK_S", 0.01)
     stopped = threading.Event()
 
     def go_on(tell: Callable[[float], object]) -> GoOn:

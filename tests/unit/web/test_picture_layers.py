@@ -13,7 +13,7 @@ from tests.unit.web.crowded import FRAME, judged, taught, two_brains
 from tests.unit.web.pictures import SVG, Picture, boxes, circles, corners, drawn, filled, ink, on_map, strokes, words
 from web.messages import Pose
 from web.viewer.fits import compose, into_map, placed
-from web.viewer.marks.outline import clipped
+from web.viewer.marks.judged import clipped
 from web.viewer.marks.robot import PALE, PATH_PALE, pale
 from web.viewer.primitives.palette import BRAINS, DARK, mix
 from web.viewer.vector import PlateName

@@ -15,7 +15,7 @@ from starlette.testclient import WebSocketDenialResponse
 from starlette.websockets import WebSocketDisconnect
 
 from tests.unit.web.doubles import ORIGIN, OURS, PAGE, PORT, House, house
-from web.http import asking, brain_files, security
+from web.http import asking, brains, security
 from web.http.api import STATIC
 from web.http.security import Bucket, Guard, Limits, own_hosts
 
@@ -163,7 +163,7 @@ def test_no_way_to_change_something_is_open_to_others(server: House, headers: di
 def test_whatever_is_only_looked_at_changes_nothing(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setenv("HOME", str(tmp_path))
     monkeypatch.setattr(asking, "ANSWER_TIMEOUT_S", 0.01)
-    monkeypatch.setattr(brain_files, "COPY_TIMEOUT_S", 0.01)
+    monkeypatch.setattr(brains, "COPY_TIMEOUT_S", 0.01)
     others = ["/", "/docs", "/viser/", "/openapi.json", "/healthz?type=kidnap", "/api/state?type=reset"]
     with house() as server:
         server.engine.answer = None

@@ -12,8 +12,7 @@ import pytest
 
 from tests.fake_snapshots import fake_reports, fake_snapshot, fake_walk
 from tests.unit.web.office_moments import living
-from web.http.places import places_of
-from web.http.state import StateText, page_fields, state, to_json
+from web.http.state import StateText, page_fields, places_of, state, to_json
 from web.messages import KnownPlace, Snapshot
 
 SNAPSHOT = fake_snapshot(500)

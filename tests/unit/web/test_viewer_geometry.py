@@ -13,7 +13,6 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from tests.fake_snapshots import fake_snapshot
-from web.cell_owners import owners
 from web.messages import Packet, Pose
 from web.viewer.camera_views import camera_for, seen_by
 from web.viewer.fits import (
@@ -94,8 +93,8 @@ def test_cells_stand_in_the_box_and_the_torus_closes_and_no_path_is_drawn_across
     layer = fake_snapshot(430).pose_cells
     edge = replace(layer, packets=(Packet(0, 0, 0, 0.5), Packet(32, 32, math.pi, 0.5)))
     edge = replace(edge, cells=np.array([[35, 63, 63], [18, 32, 32]], np.int32), activity=np.ones(2, np.float32))
-    assert owners(edge).tolist() == [0, 1]
-    assert owners(replace(edge, packets=())).tolist() == [0, 0]
+    assert edge.owners().tolist() == [0, 1]
+    assert replace(edge, packets=()).owners().tolist() == [0, 0]
     path = fit.path(np.array([[63, 5, 0.1], [0.5, 5, 0.1], [2, 5, 0.1], [2, 5, -0.1]]))
     assert len(broken_where_it_wraps(path)) == 1
 

@@ -12,7 +12,8 @@ from tests.unit.web.doubles import OURS, House, StubViewer, house, viser_double
 from tests.unit.web.frames import until
 from tests.unit.web.test_security import routes
 from web.http.commands import MODELS
-from web.http.security import LOOKS, is_look
+from web.http.security import LOOKS
+from web.viewer.viser_server import is_look
 
 WATCHER = "watch-" + "w" * 22
 WATCHED = f"/api/stream?page={WATCHER}"

@@ -6,11 +6,10 @@ import { Fields, kindOf } from "./things.js";
 import { closeMenu } from "../header/header.js";
 import { SaveDialog, WorldClient } from "./world_client.js";
 import { Plan } from "./plan.js";
-import { Pointer } from "./pointer.js";
+import { Pointer, hintOf, TOOLS } from "./tools.js";
 import { nameOfKey } from "../ui/keys.js";
 import { away } from "./geometry.js";
 import { followingLines } from "./times.js";
-import { hintOf, TOOLS } from "./tools.js";
 import { TimePanel } from "./time_panel.js";
 
 export class Editor {

@@ -1,10 +1,9 @@
 // The question alone, for a class: each browser has one vote, which can be changed until it is shown. It asks once a second, so
 // that many phones cost little.
 
-import { voteWords } from "./words.js";
+import { voteWords, Question } from "./question.js";
 import { reasons } from "../net/post.js";
 import { keep, kept, say } from "../ui/elements.js";
-import { Question } from "./question.js";
 
 /** @typedef {import("./question.js").Said} Said */
 

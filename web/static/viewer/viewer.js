@@ -3,8 +3,20 @@
 
 import { $, find } from "../ui/elements.js";
 import { toast } from "../ui/words.js";
-import { takeClicks, takePinches } from "./fingers.js";
-import { fewerPixels, firstFrame, isSoftware, restBetweenFrames, spareSoftware, whoDraws } from "./frames.js";
+import {
+  dismissSlowNotice,
+  fewerPixels,
+  firstFrame,
+  hidePanel,
+  hushPresses,
+  isSoftware,
+  keepConnected,
+  restBetweenFrames,
+  spareSoftware,
+  takeClicks,
+  takePinches,
+  whoDraws,
+} from "./viser_client.js";
 
 const LATE_MS = 20_000;
 const ON = "turn on hardware acceleration in the browser's settings and load this page again.";
@@ -104,8 +116,7 @@ export class Viewer extends EventTarget {
     const inside = /** @type {(Window & typeof globalThis) | null} */ (this.frame.contentWindow);
     const paper = this.frame.contentDocument;
     if (!paper || !inside || inside.location.href === "about:blank") return;
-    // viser reconnects only if its own frame has the focus when the connection goes; people may look elsewhere by then.
-    paper.hasFocus = () => true;
+    keepConnected(paper);
     inside.addEventListener("webglcontextlost", () => this.lost(), true);
     inside.addEventListener("webglcontextrestored", () => this.build(), true);
     firstFrame(inside).then(() => this.wake(paper)); // it looks at every frame, before the loop of them may rest
@@ -116,18 +127,8 @@ export class Viewer extends EventTarget {
     if (!this.link.watches) takeClicks(inside, (at, shift) => this.click(at, shift));
     this.keys.listen(inside);
     this.dispatchEvent(new Event("inside"));
-    // viser prevents the default of a press on a draggable thing in a passive listener. That has no effect, but the
-    // browser logs an error each time.
-    inside.addEventListener(
-      "pointerdown",
-      (event) => {
-        if (/** @type {Element} */ (event.target).tagName === "CANVAS") event.preventDefault = () => {};
-      },
-      true,
-    );
-    const style = paper.createElement("style"); // viser has a panel even when nothing is in it
-    style.textContent = HIDE_PANEL;
-    paper.head.append(style);
+    hushPresses(inside);
+    hidePanel(paper);
   }
 
   /** @param {Document} paper */
@@ -142,20 +143,6 @@ export class Viewer extends EventTarget {
       if (slow || --looks === 0) clearInterval(timer);
     }, 250);
   }
-}
-
-const HIDE_PANEL =
-  ".mantine-Paper-root[style*='fixed'], [data-dock-root] > div:not(:has(> canvas)) { display: none !important; }";
-
-/** @param {Document} paper */
-// viser covers our view buttons for good with a message that there is no graphics card; a short sentence is enough.
-function dismissSlowNotice(paper) {
-  for (const title of paper.querySelectorAll(".mantine-Notification-title")) {
-    if (!(title.textContent ?? "").startsWith("Software WebGL")) continue;
-    title.closest(".mantine-Notification-root, .mantine-Notifications-notification")?.querySelector("button")?.click();
-    return true;
-  }
-  return false;
 }
 
 const ANEW_MS = 1000; // a picture costs the server some hundredths of a second

@@ -16,7 +16,7 @@ from web.viewer.marks.movements import MovementArcs
 from web.viewer.marks.names import PlaceNames
 from web.viewer.marks.robot import GhostRobot, RobotModel, Trail
 from web.viewer.plates.plate import FLOOR_Z, Plate
-from web.viewer.plates.sight import fan_of_view, inside, solid_runs
+from web.viewer.plates.sight import echoes_at, fan_of_view, inside, solid_runs
 from web.viewer.primitives import images, meshes
 from web.viewer.primitives.labels import ROBOT, add_mesh, add_picture
 from web.viewer.primitives.palette import Palette, Rgb, mix
@@ -114,10 +114,7 @@ class OfficePlate(Plate):
         self._fan_edges.points = edges.astype(np.float32)
 
     def _draw_sonar(self, truth: Pose, angles_rad: NDArray[np.float32], ranges_m: NDArray[np.float32]) -> None:
-        heard = np.isfinite(ranges_m)
-        angles, reach = truth.heading_rad + angles_rad[heard], ranges_m[heard]
-        ends = np.column_stack([truth.x + reach * np.cos(angles), truth.y + reach * np.sin(angles)])
-        tips = meshes.lifted(self.fit.to_plate(ends), 0.14 * self.fit.relief)
+        tips = meshes.lifted(self.fit.to_plate(echoes_at(truth, angles_rad, ranges_m)), 0.14 * self.fit.relief)
         start = meshes.lifted(self.fit.to_plate(np.array([[truth.x, truth.y]])), 0.14 * self.fit.relief)
         lines = np.stack([np.repeat(start, len(tips), 0), tips], 1).astype(np.float32)
         self._sonar.points = meshes.some(lines, 8)

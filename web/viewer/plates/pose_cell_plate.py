@@ -10,11 +10,10 @@ import numpy as np
 import viser
 from numpy.typing import NDArray
 
-from web.cell_owners import owners
 from web.messages import ExperienceReport, GoalMemoryLayer, Hypothesis, OccupancyLayer, PoseCellLayer, Report, Snap
 from web.viewer.camera_views import camera_for, seen_by
 from web.viewer.fits import HEIGHT, SIDE, CellFit, broken_where_it_wraps
-from web.viewer.marks.cell_hypotheses import CellHypotheses
+from web.viewer.marks.hypotheses import CellHypotheses
 from web.viewer.marks.inspected import CellMark
 from web.viewer.marks.route import spread
 from web.viewer.plates import overlays
@@ -104,7 +103,7 @@ class PoseCellPlate(Plate):
         """Shows voxels and packets, each packet with its id, the winner always in the first colour."""
         self._set_shape(layer)
         self._layer = layer
-        owned = np.minimum(owners(layer), PACKETS - 1)
+        owned = np.minimum(layer.owners(), PACKETS - 1)
         self._draw_voxels(layer, owned)
         self._draw_packets(layer)
         self._draw_snap(layer.last_snap)
@@ -257,7 +256,7 @@ def pill_places(
 def glow(layer: PoseCellLayer, ground: images.Pixels, palette: Palette) -> images.Pixels:
     """`ground` with the light of the cells on it; row 0 of the cells is at its front edge."""
     _, n_y, n_x = layer.shape
-    owned = np.minimum(owners(layer), PACKETS - 1)
+    owned = np.minimum(layer.owners(), PACKETS - 1)
     out = ground.astype(np.float32)
     for k in np.unique(owned):
         rows = owned == k

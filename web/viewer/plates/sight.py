@@ -1,4 +1,4 @@
-"""What the robot sees of the walls from above: rays against wall segments, and whether it would fit at a place."""
+"""What the robot senses of the walls from above: its view, its sonars' echoes, and whether it would fit at a place."""
 
 from __future__ import annotations
 
@@ -36,6 +36,14 @@ def fan_of_view(walls: Array, pose: Pose, fov_rad: float, rays: int = RAYS) -> A
     within = ((offset.min(1) <= FAR_M) & (offset.max(1) >= -FAR_M)).all(1)  # walls in reach
     reach = distances(walls[within], (pose.x, pose.y), angles)
     return np.column_stack([pose.x + reach * np.cos(angles), pose.y + reach * np.sin(angles)])
+
+
+def echoes_at(pose: Pose, angles_rad: NDArray[np.float32], ranges_m: NDArray[np.float32]) -> Array:
+    """(k, 2) where the sonars that heard an echo met something."""
+    heard = np.isfinite(ranges_m)
+    angles, reach = pose.heading_rad + angles_rad[heard], ranges_m[heard]
+    xy = [pose.x + reach * np.cos(angles), pose.y + reach * np.sin(angles)]
+    return np.column_stack(xy).astype(np.float64)
 
 
 def solids(world: WorldDrawing) -> list[Array]:

@@ -15,10 +15,10 @@ from numpy.typing import NDArray
 from web.messages import CellReport, ExperienceReport, Ghost, Pose, Spread, ViewReport, WhyReport
 from web.messages.told import seconds_words
 from web.viewer.fits import CellFit, MapFit, error_line, walls_in_map
-from web.viewer.marks import cell_marks, doubt, graph, robot
+from web.viewer.marks import cell_marks, graph, robot
 from web.viewer.marks.inspected import linked_cells, links_of, spots_of
+from web.viewer.marks.judged import MOST, SIGMAS, words_of
 from web.viewer.marks.names import last_named
-from web.viewer.marks.outline import MOST
 from web.viewer.plates import overlays
 from web.viewer.plates.lesson_marks import pins
 from web.viewer.primitives import meshes
@@ -134,7 +134,7 @@ def draw_error(sheet: Sheet, subject: Subject, fit: MapFit) -> list[Entry]:
     sheet.dot(line[1].tolist(), 3.5, palette.true_path)
     sheet.avoid(line[1].tolist(), CLOSURE_RING)
     seen = sheet.within(line)
-    if (words := doubt.words_of(metres)) and len(seen):  # where the line ends, or leaves the field
+    if (words := words_of(metres)) and len(seen):  # where the line ends, or leaves the field
         sheet.label(seen[0, 1].tolist(), words, palette.sheet, up=27, fill=palette.true_path)
     return [("line", palette.true_path, "to where it truly is")]
 
@@ -145,7 +145,7 @@ def draw_spread(sheet: Sheet, subject: Subject, fit: MapFit) -> list[Entry]:
         return []
     here, turn = subject.snapshot.estimate, spread.turn_rad + fit.turn_rad
     c, s = math.cos(turn), math.sin(turn)
-    axes = np.array([spread.along_m, spread.across_m]) * doubt.SIGMAS * fit.scale
+    axes = np.array([spread.along_m, spread.across_m]) * SIGMAS * fit.scale
     middle = fit.to_plate(np.array([[here.x, here.y]]))
     around = meshes.circle(1.0, corners=48) * axes @ np.array([(c, s), (-s, c)]) + middle
     sheet.line(np.vstack([around, around[:1]]), subject.palette.robot, 2)

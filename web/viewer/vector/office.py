@@ -14,7 +14,7 @@ from web.viewer.marks import movements
 from web.viewer.marks.actors import DARKEST, DOOR_RGB, LIT, NIGHT, POOL, SHINE, unlit
 from web.viewer.marks.names import MOST
 from web.viewer.plates.office_plate import OFFICE, TRUE_PATH
-from web.viewer.plates.sight import fan_of_view, solid_runs
+from web.viewer.plates.sight import echoes_at, fan_of_view, solid_runs
 from web.viewer.primitives import meshes
 from web.viewer.primitives.palette import Palette, Rgb, mix
 from web.viewer.vector.layers import draw_ghost, draw_name, draw_path, draw_pins, ghost_entry
@@ -178,9 +178,7 @@ def _draw_sonar(sheet: Sheet, subject: Subject) -> list[Entry]:
     world, truth, ranges_m = subject.snapshot.world, subject.snapshot.truth, subject.snapshot.senses.ranges_m
     if world is None or truth is None or not world.is_office:
         return []
-    heard = np.isfinite(ranges_m)
-    angles, reach = truth.heading_rad + world.sonar_angles_rad[heard], ranges_m[heard]
-    echoes = np.column_stack([truth.x + reach * np.cos(angles), truth.y + reach * np.sin(angles)])
+    echoes = echoes_at(truth, world.sonar_angles_rad, ranges_m)
     sheet.lines([[(truth.x, truth.y), echo] for echo in echoes], subject.palette.sonar, 1.5)
     for echo in echoes.tolist():
         sheet.dot(echo, ECHO, subject.palette.sonar)

@@ -6,7 +6,6 @@ import math
 
 import numpy as np
 
-from web.cell_owners import owners
 from web.messages import GoalMemoryLayer, PoseCellLayer, Snap
 from web.messages.told import share_words
 from web.viewer.plates.pose_cell_plate import BELIEVES, LEAST_SHARE, NO_ACTIVITY, PACKETS, metres_words
@@ -85,7 +84,7 @@ def _draw_activity(sheet: Sheet, layer: PoseCellLayer, palette: Palette) -> None
     """A square a column, in the colour of the packet that most of its activity belongs to; brightness by its root."""
     sums: dict[tuple[int, int], np.ndarray] = {}
     for (_, y, x), amount, owner in zip(
-        layer.cells.tolist(), layer.activity.tolist(), np.minimum(owners(layer), PACKETS - 1).tolist(), strict=True
+        layer.cells.tolist(), layer.activity.tolist(), np.minimum(layer.owners(), PACKETS - 1).tolist(), strict=True
     ):
         sums.setdefault((x, y), np.zeros(PACKETS))[owner] += amount
     most = max((float(each.sum()) for each in sums.values()), default=1.0)

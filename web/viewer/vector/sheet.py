@@ -13,7 +13,7 @@ from xml.sax.saxutils import escape, quoteattr
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from web.viewer.marks.outline import clipped
+from web.viewer.marks.judged import clipped
 from web.viewer.primitives import images
 from web.viewer.primitives.labels import clear_place
 from web.viewer.primitives.palette import Palette, Rgb

@@ -16,7 +16,7 @@ from tests.unit.web.bench import Bench
 from tests.unit.web.crowded import FRAME, judged
 from web.messages import Pose, Snapshot, TimeView
 from web.viewer.fits import DEPTH, WIDTH, MapFit, OfficeFit, compose, into_map, placed, refit
-from web.viewer.marks.outline import clipped
+from web.viewer.marks.judged import clipped
 
 NOW: Any = judged()
 GHOST, WORLD, TRUTH = NOW.ghost, NOW.world, NOW.truth
