@@ -7,29 +7,32 @@ from __future__ import annotations
 
 import copy
 import hashlib
+import math
+import time
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from app.companion import SECTIONS, Companion
 from app.config import Config, Value
 from app.evaluation import Evaluation
-from app.hand_packet import put_packet
 from app.orders import UNCHANGED, Order, order
 from app.pilot import Mode, Pilot
-from app.pilot.goal_place import nearest_to, of_its_place
+from app.pilot.route_following import nearest_to, of_its_place
 from app.recordings.playing import Player
 from app.recordings.recording import About
 from app.sensor_input import Lap
 from app.sources.recorded import Recorded
 from app.sources.simulated import Simulated
 from app.sources.source import Source
-from app.stopwatch import Stopwatch
 from disk import copy_state, encode, kind
 from disk.words import one_line
-from ratslam_core import Estimate, RatSlam
+from ratslam_core import Estimate, PoseCells, RatSlam
+from ratslam_core.pose_cells.attractor_kernels import gaussian
 from ratslam_core.slam import STAGES
+from ratslam_core.types import wrap_angle
 from sim2d import SONAR_ANGLES_RAD, Box, SensorFrame, Simulator, Truth, World
 
 SECOND = "second brain"  # the part of a tick that there is while two brains are compared
@@ -428,3 +431,74 @@ def is_lost(session: Session) -> bool:
     """Whether a brain that was carried believes no place, or else a second packet holds more than a fifth of the activity."""
     brain, packets = session.brain, session.brain.pose_cells.packets
     return brain.lost if brain.carried else len(packets) > 1 and packets[1].mass > 0.2
+
+
+SIGMA, REACH = 1.2, 3  # in cells along x' and y', in layers along theta'
+
+
+def put_packet(pose_cells: PoseCells, x: int, y: int, heading_rad: float, share: float) -> str:
+    """Inject a packet by hand, which competes from the next tick on: a demonstration, no sensor asks for it. Returns what
+    was done, in words. ValueError outside the pose cells.
+
+    share: the packet's share of all activity once it is in.
+    """
+    n_theta, n_y, n_x = pose_cells.shape
+    if not (0 <= x < n_x and 0 <= y < n_y):
+        raise ValueError(f"a pose cell has x from 0 to {n_x - 1} and y from 0 to {n_y - 1}, got {x} and {y}")
+    layer = round(wrap_angle(heading_rad) / math.tau * n_theta) % n_theta
+    flat, value = _blob(pose_cells.shape, layer, y, x)
+    value *= share / (1 - share) / value.sum()
+    pose_cells.inject(flat, value.astype(np.float32))
+    pose_cells.settle()
+    return f"a packet of {share:.0%} put at cell ({x}, {y}) by hand"
+
+
+def _blob(shape: tuple[int, int, int], layer: int, y: int, x: int) -> tuple[NDArray[np.int32], NDArray[np.float64]]:
+    """The cells (flat indices) within REACH of one cell, wrapped on the torus, and their Gaussian weights."""
+    n_theta, n_y, n_x = shape
+    around, weights = np.arange(-REACH, REACH + 1), gaussian(SIGMA, REACH).astype(np.float64)
+    thetas, ys, xs = np.meshgrid((layer + around) % n_theta, (y + around) % n_y, (x + around) % n_x, indexing="ij")
+    flat = ((thetas * n_y + ys) * n_x + xs).ravel().astype(np.int32)
+    return flat, np.einsum("t,y,x->tyx", weights, weights, weights).ravel()
+
+
+KEPT = 100  # ticks that means and worst times are taken over
+
+
+class Stopwatch:
+    """The time that each part of a tick takes. Nothing that the session does depends on it.
+
+    Call `start`, then `lap(part)` after each part, then `finish`. If a part comes twice, its times are added.
+    """
+
+    def __init__(self, parts: tuple[str, ...]) -> None:
+        self.parts = parts
+        self._row = {part: k for k, part in enumerate(parts)}
+        self._kept_s = np.zeros((KEPT, len(parts)))
+        self._now_s = [0.0] * len(parts)
+        self._ticks = 0
+        self._then = time.perf_counter()
+
+    def start(self) -> None:
+        """A tick begins, or goes on after an interruption that is not to be counted."""
+        self._then = time.perf_counter()
+
+    def lap(self, part: str) -> None:
+        now = time.perf_counter()
+        self._now_s[self._row[part]] += now - self._then
+        self._then = now
+
+    def finish(self) -> None:
+        """The tick ends."""
+        self._kept_s[self._ticks % KEPT] = self._now_s
+        self._now_s = [0.0] * len(self.parts)
+        self._ticks += 1
+
+    @property
+    def mean_and_worst_ms(self) -> dict[str, tuple[float, float]]:
+        """Mean and worst time of each part over the last hundred ticks, in milliseconds."""
+        kept = 1e3 * self._kept_s[: min(self._ticks, KEPT)]
+        if len(kept) == 0:
+            return dict.fromkeys(self.parts, (0.0, 0.0))
+        means, worsts = kept.mean(0).tolist(), kept.max(0).tolist()
+        return dict(zip(self.parts, zip(means, worsts, strict=True), strict=True))

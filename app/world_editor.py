@@ -11,7 +11,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from sim2d import FreeSpace, Wall, World
-from sim2d.importers.dress import HEIGHT_M, Dresser
+from sim2d.importers.plan import HEIGHT_M, Dresser
 from sim2d.world.world_check import Fault, check_world
 from sim2d.world.world_file import fault_words, item_complaint
 from sim2d.world.world_schema import MOST, Element, element_of

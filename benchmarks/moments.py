@@ -13,7 +13,7 @@ import time
 
 import numpy as np
 
-from app.cli.serving import PAST_DISK_MB, PAST_MB
+from app.cli.run import PAST_DISK_MB, PAST_MB
 from app.run_record.folder import runs_folder
 from app.run_record.keyframes import Moment, PastRoom, TimeMachine
 from app.session import Session

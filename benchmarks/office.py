@@ -17,7 +17,7 @@ from app.session import Session
 from app.views.office import world_drawing
 from app.world_editor import WorldEditor
 from sim2d import Drive, Person, Place, Simulator, Start, Wall, World, load_world, world_to_json
-from sim2d.importers.dress import Dresser
+from sim2d.importers.plan import Dresser
 from web.messages import EditWorld
 
 Row = dict[str, Any]

@@ -1,7 +1,7 @@
 """The bars for recordings of real robots: `python -m benchmarks.recordings --data ../shared/data [office airsim intel]`.
 
 `variants` and `held-out` play laser logs that nobody tuned on (laser_variants.py); `--without NAME` does without a rule of
-`app/recordings/scan_odometry.py`, `--only WORDS` plays those alone whose names contain the words.
+`app/recordings/scans.py`, `--only WORDS` plays those alone whose names contain the words.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from app.recordings.motion import OdometryErrors, WithMadeOdometry
 from app.recordings.opening import open_recording
 from app.recordings.playing import Player
 from app.recordings.recording import Recording
-from app.recordings.scan_odometry import ScanRules
+from app.recordings.scans import ScanRules
 from benchmarks.laser_drives import OF_OURS, OF_OURS_HELD_OUT, driven
 from benchmarks.laser_variants import OF_A_LOG, OF_A_LOG_HELD_OUT, Log, Logged, log_of
 from sim2d.importers.import_world import open_world

@@ -1,14 +1,12 @@
 from .params import OfficeParams, SimParams
-from .sensors.ranges import SONAR_ANGLES_RAD
+from .sensors import SONAR_ANGLES_RAD
 from .simulator import Drive, SensorFrame, Simulator, Truth
 from .world import DEFAULT_WORLD, own_worlds
 from .world.drawing import Drawing, draw_world
-from .world.elements import Box, Daylight, Door, Event, Lamp, Person, SlowZone
 from .world.free_space import FreeSpace
-from .world.world import Panel, Place, Start, Wall, World
+from .world.world import Box, Daylight, Door, Event, Lamp, Panel, Person, Place, SlowZone, Start, Wall, World
 from .world.world_file import WorldError, load_world, world_from_json, world_names
-from .world.world_schema import WorldFile
-from .world.world_writer import WorldText, world_to_json
+from .world.world_schema import WorldFile, WorldText, world_to_json
 
 __all__ = [
     "DEFAULT_WORLD",

@@ -13,10 +13,9 @@ from sim2d.actors.actors import Actors
 from sim2d.geometry.segments import inside_ring
 from sim2d.params import OfficeParams, SimParams
 from sim2d.robot import Robot, Surroundings
-from sim2d.sensors.sensors import SensorFrame, Sensors, seeds, true_motion, wrap_angle
-from sim2d.world.elements import BOX_M, Box
+from sim2d.sensors import SensorFrame, Sensors, seeds, true_motion, wrap_angle
 from sim2d.world.free_space import FreeSpace, RobotFit
-from sim2d.world.world import World
+from sim2d.world.world import BOX_M, Box, World
 
 _TRIES = 1000  # random places tried to find one where the robot fits
 _OF_BOXES = ("box_appear", "box_vanish")  # lines of the script

@@ -119,7 +119,7 @@ def going_on(kept: KeptRun, tell: Callable[[float], object]) -> m.GoOn:
 
 def resumed_run(args: argparse.Namespace) -> First:
     """Go on with a run where it was left; what led there is run again first."""
-    from app.cli.progress import compile_first, with_progress
+    from app.cli.options import compile_first, with_progress
     from app.run_record.folder import busy_words, is_open
     from app.run_record.reader import open_run
     from app.run_record.resume import resumed

@@ -28,8 +28,8 @@ def main(argv: list[str] | None = None) -> int:
 
 
 VERBS = {
-    "run": "run", "runs": "runs", "replay": "runs", "headless": "headless", "deliver": "deliver", "trial": "trial",
-    "experiment": "experiment", "lessons": "lessons", "export": "export", "recording": "recording", "worlds": "worlds",
+    "run": "run", "runs": "runs", "replay": "runs", "headless": "headless", "deliver": "headless", "trial": "trial",
+    "experiment": "experiment", "lessons": "lessons", "export": "runs", "recording": "recording", "worlds": "worlds",
     "config": "command_line", "bench": "command_line",
 }  # fmt: skip
 """Each verb, and the file of app/cli that adds it, which is read only when it is asked for."""

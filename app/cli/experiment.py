@@ -144,8 +144,7 @@ def _tell(experiment: Experiment, duration: str) -> None:
 
 
 def _open(trial_id: str, args: argparse.Namespace) -> int:
-    from app.cli.run import run_with_trial
-    from app.cli.serving import Serving
+    from app.cli.run import Serving, run_with_trial
     from app.experiments.store import Store, open_trial
 
     with Store(args.store, reading=True) as store:

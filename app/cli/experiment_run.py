@@ -14,7 +14,7 @@ from pathlib import Path
 from rich.console import Console
 
 from app.cli.experiment import check_whole
-from app.cli.progress import compile_first
+from app.cli.options import compile_first
 from app.experiments.export import write_csv
 from app.experiments.live import LiveTable
 from app.experiments.pool import Duration, Workers, duration_of, pending, run_trials, time_words

@@ -49,7 +49,7 @@ def _list() -> int:
 
 
 def _check(path: Path) -> int:
-    from app.gallery.lessons import check_formulas
+    from app.gallery import check_formulas
     from app.protocol.lesson import check_lesson, read_lesson
 
     lesson = read_lesson(path)
@@ -64,7 +64,7 @@ def _check(path: Path) -> int:
 
 
 def _run(name: str, seed: int | None) -> int:
-    from app.cli.progress import compile_first
+    from app.cli.options import compile_first
     from app.protocol.lesson import find_lesson, read_lesson
     from app.protocol.performance import report_of
 
@@ -76,7 +76,7 @@ def _run(name: str, seed: int | None) -> int:
 
 
 def _time() -> int:
-    from app.cli.progress import compile_first
+    from app.cli.options import compile_first
     from app.protocol.lesson import all_lessons
     from app.protocol.performance import finish, set_scene
 

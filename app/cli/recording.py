@@ -67,7 +67,7 @@ def require_no_recording_options(args: argparse.Namespace) -> None:
 
 
 def _check(args: argparse.Namespace) -> int:
-    from app.recordings.check import check
+    from app.recordings.opening import check
 
     checked = check(recording_of(args.path, args))
     if args.json:

@@ -10,8 +10,7 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
-from app.cli.options import ENGINES, Verbs, write_report
-from app.cli.progress import compile_first, with_progress
+from app.cli.options import ENGINES, Verbs, compile_first, with_progress, write_report
 from disk import require_writable
 
 if TYPE_CHECKING:

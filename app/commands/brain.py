@@ -8,8 +8,7 @@ from collections.abc import Mapping
 from app.commands.outcome import Outcome
 from app.companion import Companion
 from app.config import Config, Value
-from app.config.pairs import engine_of, pair_of
-from app.config.presets import values_of
+from app.config.presets import engine_of, pair_of, values_of
 from app.engine.engine import Engine
 from app.run_record.reader import KeptRun
 from app.session import Session, config_beside

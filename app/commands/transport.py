@@ -6,7 +6,7 @@ from app.commands.brain import begin_again
 from app.commands.outcome import Later, Outcome
 from app.engine.engine import Engine
 from app.recordings.playing import Player
-from app.views.recorded import recording_view
+from app.views.snapshots import recording_view
 from web import messages as m
 
 

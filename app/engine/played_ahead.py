@@ -11,7 +11,7 @@ from app.orders import Order, carry_out
 from app.run_record.record import replay
 from app.run_record.situation import Situation
 from app.session import Session
-from app.views.event_log import EventLog
+from app.views.events import EventLog
 from app.views.office import goal_view
 from sim2d import World
 from web.messages import EventKind, SituationState, SituationView

@@ -16,7 +16,7 @@ from app.run_record.keyframes import TimeMachine
 from app.run_record.reader import KeptRun
 from app.run_record.writer import RunFeed
 from app.session import Session
-from app.views.event_log import EventLog
+from app.views.events import EventLog
 from app.views.history import History, VisitLog
 from app.views.snapshots import Snapshots
 from app.views.tick_stages import TickRecorder

@@ -5,7 +5,7 @@ from __future__ import annotations
 from app.engine.guide import Guide
 from app.protocol.course import Course
 from app.protocol.trial import Trial
-from app.views.event_log import EventLog
+from app.views.events import EventLog
 from web.messages import TrialState, TrialView
 
 BEFORE_S = 10.0  # a trial that is run ahead to a moment stops so long before it

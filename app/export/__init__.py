@@ -1,7 +1,18 @@
 """Runs in the formats of other programs."""
 
-from app.export.export import AT_A_MOMENT, FORMATS, Choices, Format, at_a_moment, check_export, export_run, files_of
-from app.export.played import Played, Progress, Window
+from app.export.export import (
+    AT_A_MOMENT,
+    FORMATS,
+    Choices,
+    Format,
+    Played,
+    Progress,
+    Window,
+    at_a_moment,
+    check_export,
+    export_run,
+    files_of,
+)
 
 __all__ = [
     "AT_A_MOMENT",

@@ -24,8 +24,7 @@ from rosbags.typesys import Stores, get_typestore
 from app.code_version import code_version
 from app.config.toml_file import to_toml
 from app.session import Session
-from app.views.event_log import EventLog
-from app.views.event_watch import EventWatch
+from app.views.events import EventLog, EventWatch
 from ratslam_core import Pose2
 from sim2d import SONAR_ANGLES_RAD
 

@@ -14,8 +14,7 @@ from typing import Annotated, Any, Literal
 from pydantic import AfterValidator, ConfigDict, Field, TypeAdapter, ValidationError, model_validator
 
 from app.config import Config
-from app.config.pairs import Pair, pair_of, require_pair
-from app.config.presets import values_of
+from app.config.presets import Pair, pair_of, require_pair, values_of
 from app.protocol.conditions import Until
 from app.protocol.files import read_part
 from app.protocol.measures import MEASURE_OF, MEASURES, Measure, measure_of, measures_for, reading_of

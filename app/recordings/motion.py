@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from app.recordings.formats.sensed import Rates
 from app.recordings.recording import About, Moment, Recording, Wanted, every
-from app.recordings.scan_odometry import ScanOdometry, ScanRules, is_laser
+from app.recordings.scans import ScanOdometry, ScanRules, is_laser
 from disk import copy_state, kind
 from ratslam_core import Odometry
 

@@ -1,5 +1,6 @@
 """Opens a recording: finds out what kind it is, by what is in it rather than by its name. And tells by a fingerprint
-whether one on the disk is still that from which a run was made.
+whether one on the disk is still that from which a run was made; and looks through one: what is in it, what will be used for
+what, and what is wrong with it.
 """
 
 from __future__ import annotations
@@ -14,25 +15,24 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path, PurePosixPath
+from typing import Any
 
 from app.recordings.formats.airsim import FILE as AIRSIM
 from app.recordings.formats.airsim import open_airsim
-from app.recordings.formats.archive import ZSTD, is_archive, unpack
 from app.recordings.formats.bags import MAGIC as BAG
 from app.recordings.formats.bags import METADATA, Bag, bag_packets, has_bag
-from app.recordings.formats.carmen import WORDS, open_carmen
 from app.recordings.formats.donkey import MANIFEST, open_old_tub, open_tub
+from app.recordings.formats.files import ZSTD, is_archive, open_whole, unpack
 from app.recordings.formats.image_folder import open_image_folder
-from app.recordings.formats.lines import open_whole
+from app.recordings.formats.laser_logs import WORDS, open_carmen, open_scans
 from app.recordings.formats.lying import files_in, left_over
 from app.recordings.formats.mcap_file import MAGIC as MCAP
 from app.recordings.formats.mcap_file import mcap_packets, said_of_run
 from app.recordings.formats.pictures import PICTURES, within
 from app.recordings.formats.ros_recording import open_ros
 from app.recordings.formats.ros_topics import Choice
-from app.recordings.formats.scan_json import open_scans
 from app.recordings.formats.video import VIDEOS, open_video
-from app.recordings.motion import OdometryErrors, WithMadeOdometry
+from app.recordings.motion import OdometryErrors, WithMadeOdometry, lengths
 from app.recordings.recording import About, Moment, Recording, Wanted, every
 
 _READ = (
@@ -252,3 +252,68 @@ def files_of(path: Path) -> list[Path]:
         table = path.with_suffix(".csv")
         return [path, *([table] if table != path and table.is_file() else [])]
     return sorted(file for file in path.rglob("*") if file.is_file())
+
+
+@dataclass(frozen=True, slots=True)
+class Checked:
+    """A recording after every moment of it was read."""
+
+    about: About
+    moments: int  # that can be played
+    seconds: float
+    longest_gap_s: float  # between two moments
+
+    @property
+    def report(self) -> dict[str, Any]:
+        """As JSON."""
+        about = self.about
+        report: dict[str, Any] = {
+            "recording": about.name,
+            "format": about.format,
+            "moments": self.moments,
+            "seconds": round(self.seconds, 3),
+            "longest_gap_s": round(self.longest_gap_s, 3),
+            "has": sorted(about.has),
+            "uses": list(about.uses),
+            "problems": list(about.problems),
+            "counts": [{"what": count.what, "read": count.read, "of": count.there} for count in about.counts],
+            "unused": list(about.unused),
+            "lengths": lengths(about) or "metres",
+        }
+        if about.image_shape is not None:
+            report["image_shape"] = list(about.image_shape)
+        if about.beam_angles_rad:
+            report["beams"] = len(about.beam_angles_rad)
+        return report
+
+    @property
+    def lines(self) -> list[str]:
+        """For people."""
+        about = self.about
+        rate = f", {(self.moments - 1) / self.seconds:.3g} a second" if self.seconds > 0 else ""
+        lines = [f"{about.name}: {about.format}; {self.moments} moments in {self.seconds:.6g} s{rate}"]
+        if about.image_shape is not None:
+            lines.append(f"  pictures of {about.image_shape[1]} x {about.image_shape[0]} pixels")
+        if about.beam_angles_rad:
+            limit = "" if about.range_limit_m is None else f" up to {about.range_limit_m:g} m"
+            lines.append(f"  scans of {len(about.beam_angles_rad)} beams{limit}")
+        lines += [f"  {sentence}" for sentence in about.uses]
+        lines += [f"  read {count.read} of {count.there} {count.what}" for count in about.counts]
+        lines += [f"  not used: {sentence}" for sentence in about.unused]
+        if (told := lengths(about)) is not None:
+            lines.append(f"  {told}")
+        if missing := [kind for kind in ("camera", "speed", "yaw rate", "ranges", "truth") if kind not in about.has]:
+            lines.append(f"  not in it: {', '.join(missing)}")
+        return lines
+
+
+def check(recording: Recording) -> Checked:
+    """Read all of it. ValueError: nothing in it can be played."""
+    moments, seconds, longest = 0, 0.0, 0.0
+    for moment in recording.moments():
+        longest = max(longest, moment.time_s - seconds)
+        moments, seconds = moments + 1, moment.time_s
+    if not moments:
+        told = " ".join(recording.about.problems[:2])
+        raise ValueError(f"{recording.about.name}: none of its moments can be played. {told}".strip())
+    return Checked(recording.about, moments, seconds, longest)

@@ -8,17 +8,19 @@ what is computed here.
 
 from __future__ import annotations
 
+import contextlib
 import gc
 import os
 import signal
 import subprocess
 import sys
+import threading
 from collections.abc import Callable, Iterable
 from dataclasses import replace
 from itertools import chain
 from pathlib import Path
 from types import ModuleType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numba.core import config as numba_config
@@ -42,7 +44,7 @@ import ratslam_core.solvers.dijkstra
 import ratslam_core.solvers.laplacian
 import sim2d.camera.painting
 import sim2d.geometry.grid_cells
-import sim2d.sensors.ranges
+import sim2d.sensors
 from app.config import Config
 from app.evaluation import Coverage
 from app.pilot import Pilot
@@ -70,6 +72,9 @@ from ratslam_core.pose_cells.activity_kernels import X, Y
 from ratslam_core.pose_graph.experiences import Experiences
 from ratslam_live import command_of
 from sim2d import SONAR_ANGLES_RAD, Drive, Simulator, load_world
+
+if TYPE_CHECKING:
+    from app.engine_thread import EngineThread  # loaded while others compile
 
 WORDS = "compiling the engine for this machine, once"
 
@@ -234,7 +239,7 @@ def loops() -> None:
 
 # With each part, the modules whose kernels it compiles last: once these are on disk, the whole part is.
 PARTS: dict[str, tuple[Callable[[], None], tuple[Any, ...]]] = {
-    "office": (office, (sim2d.geometry.grid_cells, sim2d.camera.painting, sim2d.sensors.ranges, app.pilot.local_movement)),
+    "office": (office, (sim2d.geometry.grid_cells, sim2d.camera.painting, sim2d.sensors, app.pilot.local_movement)),
     "cells": (cells, (ratslam_core.pose_cells.activity_kernels, ratslam_core.pose_cells.attractor_kernels,
                       ratslam_core.pose_cells.packet_kernels,
                       ratslam_core.local_view.front_ends.image_and_sonars, ratslam_core.local_view.echo_matcher,
@@ -258,6 +263,46 @@ class _Count(Listener):
         self._depth -= 1
         if self._depth == 0:
             print(flush=True)
+
+
+class Waking:
+    """Starts the engine when its kernels are compiled, from a thread of its own. The page shows the progress."""
+
+    def __init__(self, engine: EngineThread, compiling: Compiling) -> None:
+        self._engine, self._compiling = engine, compiling
+        self._stopped = False
+        self._thread = threading.Thread(target=self._wake, name="waking", daemon=True)
+
+    def start(self) -> None:
+        if self._compiling:
+            print(f"RatSLAM wakes up: {WORDS}, which takes some twenty seconds ...", flush=True)
+        self._thread.start()
+
+    def stop(self, patience_s: float | None = None) -> None:
+        """End the engine, or what precedes its start. patience_s: how long to wait for the current tick."""
+        self._stopped = True
+        self._compiling.stop()
+        self._thread.join()
+        self._engine.stop(patience_s)
+
+    def _wake(self) -> None:
+        self._compiling.wait(self._tell)
+        self._engine.latest.waking = "loading the office and the brain"
+        if not kernel_cache.in_memory:
+            _load_kernels()
+        if not self._stopped:
+            self._engine.start()
+
+    def _tell(self, words: str) -> None:
+        self._engine.latest.waking = words
+        say_how_far(words)
+
+
+def _load_kernels() -> None:
+    """While there are descriptors: whoever connects may take the last. What cannot be loaded, the engine meets and tells of."""
+    for use, _ in PARTS.values():
+        with contextlib.suppress(Exception):
+            use()
 
 
 if __name__ == "__main__":

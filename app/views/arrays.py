@@ -1,4 +1,6 @@
-"""What views have in common: read-only arrays, parts that are rebuilt seldom, and the angle by which maps are drawn."""
+"""What views have in common: read-only arrays, parts that are rebuilt seldom, the angle by which maps are drawn, and
+pictures and packets as people are shown them.
+"""
 
 from __future__ import annotations
 
@@ -11,8 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.evaluation import Evaluation, alignment
-from ratslam_core import ExperienceMap
+from app.session import Session
+from ratslam_core import ExperienceMap, Packet, RatSlam
 from sim2d import Truth
+from web import messages as m
 
 Kind = TypeVar("Kind", bound=np.generic)
 
@@ -77,3 +81,25 @@ def calm(shown_rad: float | None, wanted_rad: float) -> float:
 
 def _spread(points: NDArray[np.float64]) -> float:
     return float(np.sqrt(points.var(axis=0).sum())) if len(points) else 0.0
+
+
+_NO_PICTURE: NDArray[np.uint8] = frozen(np.zeros((0, 0, 3), np.uint8))
+
+
+def camera_image(session: Session) -> NDArray[np.uint8]:
+    """(h, w, 3) what the camera sees; without pixels while it is off."""
+    return session.frame.image if session.config.robot.camera else _NO_PICTURE
+
+
+def stored_picture(brain: RatSlam, view: int) -> NDArray[np.uint8]:
+    """A stored view as an image for people."""
+    return frozen(brain.local_view.front_end.picture(brain.local_view.stored(view)).copy())
+
+
+def present_picture(brain: RatSlam) -> NDArray[np.uint8]:
+    return frozen(brain.local_view.front_end.picture(brain.local_view.features).copy())
+
+
+def packet_of(packet: Packet) -> m.Packet:
+    """A packet of the engine as one that is shown."""
+    return m.Packet(packet.x, packet.y, packet.heading_rad, packet.mass, packet.id)

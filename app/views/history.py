@@ -11,8 +11,7 @@ from app.companion import Companion
 from app.evaluation import Coverage
 from app.session import Session
 from app.views.arrays import frozen, map_turn
-from app.views.event_log import EventLog
-from app.views.event_watch import EventWatch
+from app.views.events import EventLog, EventWatch
 from disk import kind
 from ratslam_core import Packet, Pose2
 from web.messages import Series, Snap, Times

@@ -6,10 +6,9 @@ import numpy as np
 
 from app.pilot.behaviours import words_of
 from app.session import Session
-from app.views.arrays import frozen
+from app.views.arrays import camera_image, frozen, packet_of, present_picture, stored_picture
 from app.views.history import VisitLog
 from app.views.reasons import Reasons
-from app.views.senses import camera_image, packet_of, present_picture, stored_picture
 from ratslam_core import Link, RatSlam
 from web.messages import (
     CellReport,

@@ -13,9 +13,8 @@ from numpy.typing import NDArray
 
 from app.evaluation import Evaluation
 from app.session import Session
-from app.views.arrays import frozen
+from app.views.arrays import frozen, packet_of
 from app.views.history import History
-from app.views.senses import packet_of
 from ratslam_core import CellsOnly, ExperienceMap
 from ratslam_core.pose_cells.network import PoseCells
 from web.messages import (

@@ -11,9 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.session import Session
+from app.views.arrays import camera_image, packet_of, stored_picture
 from app.views.belief import SpokenFor
-from app.views.event_log import EventLog
-from app.views.senses import camera_image, packet_of, stored_picture
 from ratslam_core import Packet, Pose2
 from ratslam_core.extensions.evidence import Belief
 from web import messages as m
@@ -27,9 +26,9 @@ LOOKS_BACK_S = 10.0  # a robot that feels lost: what it recognised in this time
 class Reasons:
     """Call `watch` after each tick, and one of the others when something has happened in it."""
 
-    def __init__(self, session: Session, log: EventLog) -> None:
-        """log: the chain is kept with its event."""
-        self._session, self._kept = session, log.why
+    def __init__(self, session: Session, kept: dict[int, m.WhyReport]) -> None:
+        """kept: the chains, by the numbers of their events."""
+        self._session, self._kept = session, kept
         self.causes, self._spoken = SnapCauses(session), SpokenFor()
         self._before = self._now = self._packets()
         self._robot_before = self._robot = session.brain.experience_map.robot

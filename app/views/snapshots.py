@@ -5,19 +5,19 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any, cast
 
+import numpy as np
+
 from app.config import Config, Value
-from app.config.pairs import pairs_beside, without
-from app.config.presets import PRESETS, preset_of
+from app.config.presets import PRESETS, pairs_beside, preset_of, without
+from app.recordings.recording import About
 from app.session import SECOND, Session, is_lost
-from app.views.arrays import Slow
+from app.views.arrays import Slow, camera_image, frozen
 from app.views.belief import belief_of, spread_of
 from app.views.beside import BesideDrawn
-from app.views.history import History
+from app.views.history import History, Trails
 from app.views.inspection import inspect
 from app.views.map_layers import MapLayers, goal_memory_layer, occupancy_layer, pose_cell_layer
 from app.views.office import ActorsView, DrawnWorld, ghost_of, goal_view, known_places, movements_of, shown, tags_view
-from app.views.recorded import TruthFloor, no_room, recording_view
-from app.views.senses import senses_of
 from app.views.tick_stages import Walk
 from ratslam_core import Pose2
 from ratslam_core.params.additions import ADDITIONS
@@ -30,13 +30,16 @@ from web.messages import (
     PairChoice,
     Parameter,
     Pose,
+    RecordingView,
     Report,
+    Senses,
     SituationView,
     Snapshot,
     TimeView,
     Timing,
     TrialView,
     UntilView,
+    WorldDrawing,
 )
 
 OCCUPANCY_EVERY_S = 2.0  # of wall time
@@ -248,3 +251,92 @@ def _choices(beginning: Config, now: Config) -> Iterator[PairChoice]:
 
 def _off(config: Config) -> tuple[str, ...]:
     return tuple(addition.name for addition in ADDITIONS if without(addition, config))
+
+
+def senses_of(session: Session) -> Senses:
+    recognition, local_view = session.estimate.recognition, session.brain.local_view
+    best, front_end = recognition.best_view, local_view.front_end
+    stored = local_view.stored(best) if best >= 0 else None
+    return Senses(
+        camera=camera_image(session),
+        front_end=local_view.params.front_end,
+        seen=frozen(front_end.picture(local_view.features).copy()),
+        seen_words=front_end.words(local_view.features),
+        best=None if stored is None else frozen(front_end.picture(stored).copy()),
+        best_words="" if stored is None else front_end.words(stored),
+        best_view=best,
+        difference=recognition.difference,
+        threshold=local_view.threshold,
+        active_view=recognition.view,
+        recruited=recognition.recruited,
+        false_positive=recognition.false_positive,
+        false_positives=local_view.false_positives,
+        ranges_m=session.frame.ranges_m,
+    )
+
+
+LEAST_M = 4.0  # half the side of the ground at the beginning
+MARGIN = 0.3  # of its size, that the ground grows beyond the path, so that it seldom has to be drawn anew
+MARK = 0.014  # the robot's radius as a share of the ground: how large the recorded robot is, nobody says
+
+Bounds = tuple[float, float, float, float]
+
+
+def recording_view(about: About, over: bool) -> RecordingView:
+    return RecordingView(about.name, about.format, about.moments, about.seconds, tuple(sorted(about.has)), over)
+
+
+def no_room(_x: float, _y: float) -> str:
+    """Why a recorded robot cannot be put anywhere."""
+    return "a recording plays: its robot cannot be carried away"
+
+
+class TruthFloor:
+    """An empty ground without walls that grows with the true path. None as long as the recording tells no truth."""
+
+    def __init__(self) -> None:
+        self._drawn: WorldDrawing | None = None
+
+    def look(self, session: Session, trails: Trails) -> WorldDrawing | None:
+        truth = session.truth
+        if truth is None:
+            return self._drawn
+        points = np.vstack([trails.robot, [(truth.x, truth.y)]])
+        if self._drawn is None:
+            bounds = truth.x - LEAST_M, truth.y - LEAST_M, truth.x + LEAST_M, truth.y + LEAST_M
+            self._drawn = _ground(session, bounds)
+        elif not _holds(self._drawn.bounds, points):
+            self._drawn = _ground(session, _grown(self._drawn.bounds, points))
+        return self._drawn
+
+
+def _holds(bounds: Bounds, points: np.ndarray) -> bool:
+    return bool((points.min(0) >= bounds[:2]).all() and (points.max(0) <= bounds[2:]).all())
+
+
+def _grown(bounds: Bounds, points: np.ndarray) -> Bounds:
+    low, high = np.minimum(points.min(0), bounds[:2]), np.maximum(points.max(0), bounds[2:])
+    more = MARGIN * (high - low).max()
+    low = np.where(low < bounds[:2], low - more, low)
+    high = np.where(high > bounds[2:], high + more, high)
+    return float(low[0]), float(low[1]), float(high[0]), float(high[1])
+
+
+def _ground(session: Session, bounds: Bounds) -> WorldDrawing:
+    name = session.source.name
+    none = frozen(np.zeros(0, np.float32))
+    return WorldDrawing(
+        name=name,
+        title=name,
+        bounds=bounds,
+        walls=frozen(np.zeros((0, 4), np.float32)),
+        wall_height_m=none,
+        wall_kind=(),
+        panels=frozen(np.zeros((0, 6), np.float32)),
+        panel_rgb=frozen(np.zeros((0, 3), np.uint8)),
+        places=(),
+        robot_radius_m=MARK * max(bounds[2] - bounds[0], bounds[3] - bounds[1]),
+        camera_fov_rad=session.config.local_view.field_of_view,
+        sonar_angles_rad=none,
+        is_office=False,
+    )

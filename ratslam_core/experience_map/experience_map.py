@@ -146,7 +146,7 @@ class ExperienceMap(PoseGraph):
     def tie(self, i: int, j: int, moved: Pose2, sigma_m: float) -> None:
         """[ours] Something besides views measured where j lies in the frame of i, give or take `sigma_m`: a closure, no way.
 
-        A laser does that (`app/recordings/scan_ties.py`); nobody else does.
+        A laser does that (`app/recordings/scans.py`); nobody else does.
         test_scan_ties.py::test_a_scan_ties_an_experience_to_an_old_one_where_it_belongs.
         """
         t = self.transitions

@@ -15,9 +15,8 @@ from disk import kind
 from sim2d.actors.walkers import PERSON_SIDES, Walkers
 from sim2d.geometry.segments import nearest_segment
 from sim2d.params import OfficeParams
-from sim2d.world.elements import Box, Door, Event, Lamp
 from sim2d.world.free_space import Standing
-from sim2d.world.world import World
+from sim2d.world.world import Box, Door, Event, Lamp, World
 
 CLEARANCE_M = 0.01  # least distance from the robot of a moving leaf and of a box that appears
 DOOR_TIP_M = 0.1  # the tip of a leaf moves no farther in a tick: not over a robot, and the smallest is as wide

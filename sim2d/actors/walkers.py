@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from disk import kind
 from sim2d.geometry.wall_index import squared_distance
-from sim2d.world.elements import Person
+from sim2d.world.world import Person
 
 PERSON_SIDES = 8
 COMES_BACK_M = 0.01  # margin beyond the robot's reach at which a person comes back

@@ -21,8 +21,7 @@ from scipy.sparse.csgraph import dijkstra
 
 from sim2d.geometry.grid_cells import connected, spread
 from sim2d.geometry.segments import differing, free_cells, inside_ring, nearest_segment
-from sim2d.world.elements import Box, Door
-from sim2d.world.world import World
+from sim2d.world.world import Box, Door, World
 
 CELL_M = 0.05
 MOST_CELLS = 4_000_000  # a larger floor is given larger cells

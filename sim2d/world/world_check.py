@@ -9,9 +9,8 @@ from itertools import chain, pairwise
 import numpy as np
 
 from sim2d.geometry.segments import inside_ring
-from sim2d.world.elements import Event
 from sim2d.world.free_space import FreeSpace, RobotFit, Standing
-from sim2d.world.world import Wall, World
+from sim2d.world.world import Event, Wall, World
 
 ROBOT_HEIGHT_M = 0.6  # walls whose lower edge is at least this high do not touch the robot
 MOST_M = 3000.0

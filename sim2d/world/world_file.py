@@ -15,8 +15,7 @@ from sim2d.params import SimParams
 from sim2d.world import DEFAULT_WORLD, own_worlds
 from sim2d.world.json_lines import deeper_than, line_of
 from sim2d.world.world import World
-from sim2d.world.world_schema import WorldFile
-from sim2d.world.world_writer import world_to_json
+from sim2d.world.world_schema import WorldFile, world_to_json
 
 if TYPE_CHECKING:
     from sim2d.world.world_check import Fault, Where

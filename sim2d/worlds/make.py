@@ -14,10 +14,9 @@ from pathlib import Path
 
 import numpy as np
 
-from sim2d.importers.dress import Dresser, Point
-from sim2d.world.elements import Box, Daylight, Door, Event, Lamp, Person, SlowZone
-from sim2d.world.world import Panel, Place, Start, Wall, World
-from sim2d.world.world_writer import world_to_json
+from sim2d.importers.plan import Dresser, Point
+from sim2d.world.world import Box, Daylight, Door, Event, Lamp, Panel, Person, Place, SlowZone, Start, Wall, World
+from sim2d.world.world_schema import world_to_json
 
 DOOR_M = 1.2
 

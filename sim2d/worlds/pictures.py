@@ -14,8 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim2d.world.drawing import draw_world
-from sim2d.world.elements import Rgb
-from sim2d.world.world import World
+from sim2d.world.world import Rgb, World
 from sim2d.world.world_file import load_world, world_names
 
 _SIDE_PX = 1000  # width of the picture

@@ -18,9 +18,8 @@ import numpy as np
 from mcap.writer import CompressionType
 
 from app.headless.recorded import run_recording
-from app.recordings.check import check
 from app.recordings.motion import OdometryErrors
-from app.recordings.opening import Opening, open_recording
+from app.recordings.opening import Opening, check, open_recording
 from app.recordings.playing import Player
 from tests.fuzz.mutators import bytes_spoilt
 from tests.recordings import FORMATS, mcap

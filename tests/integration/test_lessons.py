@@ -7,7 +7,7 @@ import re
 import pytest
 
 from app.engine.lesson_run import Teaching
-from app.gallery.lessons import StoredLessons, check_formulas
+from app.gallery import StoredLessons, check_formulas
 from app.protocol.lesson import Lesson, catalogue, check_lesson
 from app.protocol.performance import perform_round, report_of
 from ratslam_core.params.additions import ADDITIONS

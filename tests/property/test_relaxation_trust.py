@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ratslam_core.extensions import robust_closures
+from ratslam_core.extensions import exact_solver
 from ratslam_core.pose_graph import relaxation
 from ratslam_core.pose_graph.pose_graph import STEP_SIGMA, TURN_CELLS
 from ratslam_core.pose_graph.relaxation import solve
@@ -34,7 +34,7 @@ def carried_chain(looks: int) -> tuple[np.ndarray, np.ndarray]:
     poses[:, 0] = 0.05 * np.arange(40)
     trust = np.ones(len(links))
     for _ in range(60):
-        trust = robust_closures.trust(poses, links, moves, weights, is_chain, 0.25)
+        trust = exact_solver.trust(poses, links, moves, weights, is_chain, 0.25)
         solve(poses, links, moves, weights * trust)
     return poses[:, 0] - true_x, trust
 
@@ -62,12 +62,12 @@ def test_how_far_a_link_gives(times: float, bearing: float, share: float, weight
     odometry is halved where it gives. Angles count as distances, and a weight of a quarter halves the error."""
     links, poses = np.array([[0, 1]]), np.zeros((2, 3))
     for chain, gives, expected in (
-        (False, robust_closures.LOOK_GIVES, 1 / max(times, 1.0)),
-        (True, robust_closures.ODOMETRY_GIVES, 1 / (1 + times**2)),
+        (False, exact_solver.LOOK_GIVES, 1 / max(times, 1.0)),
+        (True, exact_solver.ODOMETRY_GIVES, 1 / (1 + times**2)),
     ):
         cells = times * gives * STEP_SIGMA / np.sqrt(weight)
         metres, turn = cells * cell_m * np.cos(share), TURN_CELLS * cells * np.sin(share)
         assert abs(turn) < np.pi
         move = np.array([[metres * np.cos(bearing), metres * np.sin(bearing), turn]])
-        found = robust_closures.trust(poses, links, move, np.array([weight]), np.array([chain]), cell_m)
+        found = exact_solver.trust(poses, links, move, np.array([weight]), np.array([chain]), cell_m)
         assert found[0] == pytest.approx(expected, rel=1e-9)

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from sim2d.camera.sight import MAX_HITS, MOST_FLAT_RAD, NEAR_M, column_hits, lens_rays, round_hits, seen_walls
 from sim2d.geometry.segments import nearest_segment
 from sim2d.geometry.wall_index import build_index, first_wall, nearest_within
-from sim2d.sensors.ranges import laser_ranges
+from sim2d.sensors import laser_ranges
 from tests.unit.sim2d.literal import ray_length
 
 FOCAL = 30.0

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from app.config import Config
-from app.config.pairs import pairs_beside
+from app.config.presets import pairs_beside
 from app.protocol.lesson import Lesson, catalogue
 from app.protocol.performance import perform_round, report_of
 from web.shared import TABS

@@ -279,7 +279,7 @@ Since = Literal["beginning", "now"]
 
 @dataclass(frozen=True, slots=True)
 class PairChoice:
-    """A brain that is worth comparing with the first as it is now; app/config/pairs.py makes them.
+    """A brain that is worth comparing with the first as it is now; app/config/presets.py makes them.
 
     since: the run begins anew with both, or goes on with a copy that can become such a brain while it runs.
     """

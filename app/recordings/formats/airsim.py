@@ -7,10 +7,9 @@ from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
 
-from app.recordings.formats.lines import lines_of
+from app.recordings.formats.files import lines_of
 from app.recordings.formats.pictures import beside, read_picture
-from app.recordings.formats.problems import Problems
-from app.recordings.formats.sensed import Sensed, heading_of, ns_of
+from app.recordings.formats.sensed import Problems, Sensed, heading_of, ns_of
 from app.recordings.formats.streamed import StreamedRecording
 
 FILE = "airsim_rec.txt"

@@ -24,12 +24,11 @@ from urllib.parse import quote
 import yaml
 import zstandard
 
-from app.recordings.formats.archive import ZSTD, lz4_unpacked
-from app.recordings.formats.lines import open_whole
+from app.recordings.formats.files import ZSTD, lz4_unpacked, open_whole
 from app.recordings.formats.lying import by_number
 from app.recordings.formats.mcap_file import mcap_packets
-from app.recordings.formats.problems import Problems
 from app.recordings.formats.ros_messages import MOST_CHUNK, Packet, cdr_of, type_of
+from app.recordings.formats.sensed import Problems
 from disk.words import plain
 
 MAGIC = b"#ROSBAG V2.0\n"

@@ -16,7 +16,7 @@ from datetime import UTC, datetime
 from itertools import islice, pairwise
 from pathlib import Path
 
-from app.recordings.formats.lines import lines_of
+from app.recordings.formats.files import lines_of
 from app.recordings.formats.pictures import PICTURES
 from app.recordings.formats.sensed import ns_of
 

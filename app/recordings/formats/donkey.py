@@ -9,11 +9,10 @@ from functools import partial
 from pathlib import Path
 from typing import Any, cast
 
-from app.recordings.formats.lines import lines_of
+from app.recordings.formats.files import lines_of
 from app.recordings.formats.lying import by_number
 from app.recordings.formats.pictures import beside, read_picture, within
-from app.recordings.formats.problems import Problems
-from app.recordings.formats.sensed import Sensed, ns_of
+from app.recordings.formats.sensed import Problems, Sensed, ns_of
 from app.recordings.formats.streamed import StreamedRecording
 from disk.words import plain
 

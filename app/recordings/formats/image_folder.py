@@ -22,8 +22,7 @@ from numpy.typing import NDArray
 
 from app.recordings.formats.lying import by_number, cameras_of, files_in, left_over, times_in_names
 from app.recordings.formats.pictures import read_picture, within
-from app.recordings.formats.problems import Problems
-from app.recordings.formats.sensed import Picture, Rates, Sensed
+from app.recordings.formats.sensed import Picture, Problems, Rates, Sensed
 from app.recordings.formats.streamed import StreamedRecording
 from app.recordings.formats.table import Table
 from disk.words import plain

@@ -13,10 +13,9 @@ from mcap.exceptions import McapError
 from mcap.records import Attachment, Channel, Chunk, Footer, McapRecord, Message, Metadata, Schema
 from mcap.stream_reader import StreamReader, breakup_chunk
 
-from app.recordings.formats.archive import lz4_unpacked, zstd_unpacked
-from app.recordings.formats.lines import open_whole
-from app.recordings.formats.problems import Problems
+from app.recordings.formats.files import lz4_unpacked, open_whole, zstd_unpacked
 from app.recordings.formats.ros_messages import MOST_CHUNK, SONAR_ANGLES, Packet, cdr_of, type_of
+from app.recordings.formats.sensed import Problems
 from disk.words import plain
 
 BROKEN = (McapError, ValueError, struct.error, EOFError, OSError, OverflowError, MemoryError)

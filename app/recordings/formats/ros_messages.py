@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from rosbags.interfaces import Nodetype
 from rosbags.typesys import Stores, get_types_from_idl, get_types_from_msg, get_typestore
 
-from app.recordings.formats.archive import ZSTD, zstd_unpacked
+from app.recordings.formats.files import ZSTD, zstd_unpacked
 from app.recordings.formats.pictures import require_size, unpacked
 from app.recordings.formats.sensed import Beams, heading_of
 from app.recordings.recording import Pose

@@ -11,12 +11,11 @@ from pathlib import Path
 import numpy as np
 
 from app.recordings.formats import ros_messages as ros
-from app.recordings.formats.problems import Problems
 from app.recordings.formats.ros_messages import SONAR_ANGLES, Packet
 from app.recordings.formats.ros_odometry import transforms_in
 from app.recordings.formats.ros_topics import Choice, Roles, Topic, roles_of, times_of, turned_otherwise
 from app.recordings.formats.ros_topics import unused as unused_topics
-from app.recordings.formats.sensed import Beams, Rates, Sensed
+from app.recordings.formats.sensed import Beams, Problems, Rates, Sensed
 from app.recordings.formats.streamed import StreamedRecording
 from disk.words import plain
 

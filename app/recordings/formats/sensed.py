@@ -1,4 +1,7 @@
-"""What a recording's line or message tells, before moments are made of it."""
+"""What a recording's line or message tells, before moments are made of it; and what is wrong with it, in sentences: the first
+ones of each kind, and how many more there are. How much of each source was read is counted where it comes in and again
+where it is used.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +13,8 @@ from decimal import Decimal, InvalidOperation
 import numpy as np
 from numpy.typing import NDArray
 
-from app.recordings.recording import Pose
+from app.recordings.recording import Count, Pose
+from disk.words import plain
 
 MOST_NS = 10**20  # some three thousand years
 
@@ -81,3 +85,52 @@ def ns_of(text: str, unit_ns: int = 1_000_000_000) -> int:
 def heading_of(w: float, x: float, y: float, z: float) -> float:
     """The heading (rad) of a quaternion's turn about the vertical."""
     return math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
+
+
+TOLD = 10  # sentences of one kind
+
+
+class Problems:
+    """Collects sentences. The same one counts once, so that a recording may be read more than once."""
+
+    def __init__(self) -> None:
+        self._told: dict[str, dict[str, None]] = {}
+        self._more: dict[str, int] = {}
+        self._there: dict[str, int] = {}
+        self._read: dict[str, int] = {}
+
+    def seen(self, source: str) -> None:
+        """One more message, line or picture of this source has come, whatever becomes of it."""
+        self._there[source] = self._there.get(source, 0) + 1
+
+    def read(self, source: str) -> None:
+        """One of them is used."""
+        self._read[source] = self._read.get(source, 0) + 1
+
+    @property
+    def counts(self) -> tuple[Count, ...]:
+        """Of every source of which something has come."""
+        return tuple(Count(source, self._read.get(source, 0), there) for source, there in self._there.items())
+
+    def add(self, kind: str, where: str, what: str) -> None:
+        """kind: of which the first few are told; where: the message, line or file; what: is wrong with it."""
+        sentence = f"{where}: {plain(what)}"
+        told = self._told.setdefault(kind, {})
+        if len(told) < TOLD:
+            told[sentence] = None
+        elif sentence not in told:
+            self._more[kind] = self._more.get(kind, 0) + 1
+
+    def begin(self) -> None:
+        """The recording is read from its beginning again: what was only counted is counted anew."""
+        self._more.clear()
+        self._there.clear()
+        self._read.clear()
+
+    def __bool__(self) -> bool:
+        return bool(self._told)
+
+    @property
+    def sentences(self) -> tuple[str, ...]:
+        lines = [sentence for told in self._told.values() for sentence in told]
+        return (*lines, *(f"and {count} more: {kind}" for kind, count in self._more.items()))

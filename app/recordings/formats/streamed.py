@@ -15,8 +15,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from app.recordings.formats.problems import Problems
-from app.recordings.formats.sensed import Beams, Sensed
+from app.recordings.formats.sensed import Beams, Problems, Sensed
 from app.recordings.recording import About, Moment, Pose, Wanted, every
 
 SCAN_HELD_S, TRUTH_HELD_S = 0.25, 0.1  # older ones are not those of a picture

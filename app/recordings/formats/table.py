@@ -13,10 +13,9 @@ from pathlib import Path
 import numpy as np
 
 from app.recordings.formats.cells import columns_without_header, is_picture, ns_of_date, samples, style_of
-from app.recordings.formats.lines import lines_of
+from app.recordings.formats.files import lines_of
 from app.recordings.formats.lying import rank_of
-from app.recordings.formats.problems import Problems
-from app.recordings.formats.sensed import Picture, Rates, Sensed, ns_of
+from app.recordings.formats.sensed import Picture, Problems, Rates, Sensed, ns_of
 from app.recordings.recording import Pose
 from disk.words import plain
 

@@ -14,10 +14,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from app.recordings.formats.lines import open_whole
+from app.recordings.formats.files import open_whole
 from app.recordings.formats.pictures import require_size
-from app.recordings.formats.problems import Problems
-from app.recordings.formats.sensed import Rates, Sensed
+from app.recordings.formats.sensed import Problems, Rates, Sensed
 from app.recordings.formats.streamed import StreamedRecording
 from app.recordings.formats.table import Table
 from disk.words import plain

@@ -61,6 +61,11 @@ def grey(image: NDArray[np.uint8] | None) -> NDArray[np.uint8]:
     return np.asarray(cv2.cvtColor(good, cv2.COLOR_RGB2GRAY), np.uint8) if good.ndim == 3 else good
 
 
+def grey_template(image: NDArray[np.uint8] | None) -> NDArray[np.uint8]:
+    """An image as 12 x 8 grey levels, shape (8, 12), each the mean of its area."""
+    return np.asarray(cv2.resize(grey(image), (COLUMNS, ROWS), interpolation=cv2.INTER_AREA), np.uint8)
+
+
 def checked(image: NDArray[np.uint8] | None) -> NDArray[np.uint8]:
     """The image, or a ValueError that says what it should be: uint8, (h, w) grey or (h, w, 3) RGB, 8 x 12 pixels at least."""
     if not isinstance(image, np.ndarray) or image.dtype != np.uint8:

@@ -1,6 +1,6 @@
 """[ours] A view as 12 x 8 levels that hardly depend on the light, and the echoes of the sonars.
 
-ACRA 2006 section 7 compares grey levels: `template` is the plain twin. Lamps and daylight change these, and walls look
+ACRA 2006 section 7 compares grey levels: `Template` is the plain twin. Lamps and daylight change these, and walls look
 alike; the sonars see in the dark and tell many look-alikes apart. benchmarks/recognition.py measures what each part is
 worth. test_image_and_sonars.py::{test_light_is_mostly_taken_off, test_sonars_tell_look_alikes_apart},
 test_front_ends.py::test_a_bare_wall_shows_nothing_to_the_front_end_that_is_ours.
@@ -15,8 +15,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from disk import kind
-from ratslam_core.local_view.front_ends.front_end import FrontEnd
-from ratslam_core.local_view.front_ends.template import grey_template
+from ratslam_core.local_view.front_ends.front_end import FrontEnd, grey_template
 from ratslam_core.local_view.matcher import COLUMNS, ROWS, SIZE, Features
 
 ECHOES = 8
@@ -131,3 +130,35 @@ def _doubt(features: Features) -> float:
         deaf += code == 0
     plain = max(0.0, 1.0 - along_rows(features) / FULL_PATTERN)
     return PLAIN_DOUBT * plain + SILENT_DOUBT * (silent / ECHOES) + DEAF_DOUBT * (deaf / ECHOES)
+
+
+MOST = 40.0  # levels: a pixel that is half as bright again as its column, and more
+
+
+@kind("limited levels/2")
+class LimitedLevels(FrontEnd):
+    """[ours] A view as 12 x 8 levels in even light, each limited, for the pictures of real cameras, and no echoes.
+
+    Lamps, windows and black chairs are some hundred times as bright as one another: a pixel of theirs that moves to the
+    next would weigh more than the whole of the rest. So no pixel differs from the mean of its column by more than so many
+    levels. test_recorded_front_ends.py::test_a_lamp_counts_no_more_than_a_wall.
+    """
+
+    columns, rows = COLUMNS, ROWS
+    shifts, scale, threshold, surprise, vague = True, 1.0, 7.0, 9.5, 0.0
+
+    def look(self, image: NDArray[np.uint8] | None, _scene: int | None = None, _ranges_m: object = None) -> Features:
+        levels = LEVELS[grey_template(image)]
+        column, middle = levels.mean(axis=0), LEVELS[int(MIDDLE)]
+        off = levels - EVEN * column - (1 - EVEN) * middle
+        return np.rint(MIDDLE + np.clip(off, -MOST, MOST)).astype(np.uint8).T.ravel()
+
+    def bland(self, features: Features) -> bool:
+        """A wall at arm's length looks the same to either side."""
+        return along_rows(features) < LEAST_PATTERN
+
+    def picture(self, features: Features) -> NDArray[np.uint8]:
+        return features.reshape(COLUMNS, ROWS).T
+
+    def words(self, features: Features) -> str:
+        return f"12 x 8 limited levels in even light, {features.mean():.0f} on average"

@@ -10,8 +10,7 @@ from pathlib import Path
 import pytest
 
 from app.cli import command_line as cli
-from app.cli import progress
-from app.cli.options import port_number
+from app.cli.options import port_number, with_progress
 from app.config import Config, from_toml
 from sim2d.world.world_file import WORLDS
 
@@ -205,7 +204,7 @@ def test_progress_is_counted_beyond_what_was_expected(monkeypatch: Patch) -> Non
             progress(10.0, "exploring")
         return "done"
 
-    assert progress.with_progress(50.0, work) == "done"
+    assert with_progress(50.0, work) == "done"
     assert [(now["completed"], now["total"]) for now in told[-3:]] == [(50, 50), (60, 60), (70, 70)]
 
 

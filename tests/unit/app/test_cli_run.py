@@ -13,10 +13,9 @@ from typing import Any
 import pytest
 
 from app import engine_thread
-from app.cli import beginnings, serving
+from app.cli import beginnings, run
 from app.cli import command_line as cli
-from app.cli.run import run_with_trial
-from app.cli.serving import Serving
+from app.cli.run import Serving, run_with_trial
 from app.config import Config
 from app.engine.engine import Engine
 from app.protocol.experiment import find_experiment
@@ -190,7 +189,7 @@ def test_an_engine_that_cannot_begin_ends_the_program_with_a_sentence(monkeypatc
 
 def test_the_memory_for_looking_back_is_said_in_megabytes(doubles: Doubles, capsys: Captured) -> None:
     usual = PastRoom()
-    assert (usual.memory_bytes, usual.disk_bytes) == (1e6 * serving.PAST_MB, 1e6 * serving.PAST_DISK_MB)
+    assert (usual.memory_bytes, usual.disk_bytes) == (1e6 * run.PAST_MB, 1e6 * run.PAST_DISK_MB)
     assert cli.main(["run", "--keep-past", "50", "--keep-past-disk", "0"]) == 0
     room = doubles.made["engine"][3]["past_room"]
     assert (room.memory_bytes, room.disk_bytes) == (50_000_000, 0)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from app.session import Session
-from app.views.event_log import SETTLES_S
+from app.views.events import SETTLES_S
 from app.views.history import History
 from sim2d import load_world
 

@@ -9,9 +9,9 @@ import pytest
 from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
 
-from app import session_laws
+from app import session_snapshot
 from app.config import Config, Value
-from app.config.pairs import pairs_beside
+from app.config.presets import pairs_beside
 from app.orders import Order, carry_out
 from app.recordings.playing import Player
 from app.session import Session, played_session
@@ -164,7 +164,7 @@ def test_as_orders_and_from_a_file_both_go_on_as_they_did_and_a_spoilt_one_is_re
         carry_out(run_for(again, order.tick - again.tick_count), order)
     for each in (session, kept, again):
         run_for(each, 60)
-        session_laws.check(each, OFFICE)
+        session_snapshot.check(each, OFFICE)
     both = [(each.state_hash(), each.companion and each.companion.digest()) for each in (session, kept, again)]
     assert both == both[:1] * 3
     assert kept.companion is not None

@@ -5,8 +5,7 @@ from __future__ import annotations
 import pytest
 
 from app.config import Config, Value
-from app.config.pairs import NAMES, pair_of, pairs_beside, without
-from app.config.presets import PRESETS
+from app.config.presets import NAMES, PRESETS, pair_of, pairs_beside, without
 from app.engine.engine import Engine
 from app.protocol.trial import run_trial
 from app.recordings.playing import Player

@@ -24,7 +24,7 @@ from app.config import Config
 from app.engine_thread import EngineThread
 from app.headless import run_headless
 from app.startup.compiling import Compiling
-from app.startup.waking import Waking
+from app.startup.compiling import Waking
 from sim2d import load_world
 from web import messages as m
 

@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 from app.experiments.store import Outcome, Store, default_path
-from app.gallery.gallery import StoredGallery
+from app.gallery import StoredGallery
 from app.protocol.experiment import catalogue, names
 from app.protocol.trial import Trial
 from tests.unit.app.trial_makers import make_outcome, make_trial, score_of

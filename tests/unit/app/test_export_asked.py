@@ -14,7 +14,7 @@ import pytest
 
 from app.cli import command_line as cli
 from app.export import FORMATS
-from app.export.page import NOT_KEPT, PageExports
+from app.export.export import NOT_KEPT, PageExports
 from app.export.text_formats import g2o_text
 from app.session_snapshot import take_session
 from ratslam_live import command_of

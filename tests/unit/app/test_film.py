@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from app.recordings.formats import video
 from app.recordings.opening import open_recording
 from app.recordings.recording import Moment, Recording
-from app.recordings.reel import Reel
+from app.sources.recorded import Reel
 
 pytestmark = pytest.mark.slow
 

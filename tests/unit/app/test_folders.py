@@ -15,8 +15,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.recordings.check import Checked, check
-from app.recordings.opening import open_recording
+from app.recordings.opening import Checked, check, open_recording
 from tests.recordings import BEGAN_NS, HZ, N, drive, png, tub
 
 STEP_NS = 10**9 // HZ

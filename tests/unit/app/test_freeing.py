@@ -9,7 +9,7 @@ import pytest
 
 from ratslam_core import Odometry
 from sim2d import Drive, Simulator
-from sim2d.world.elements import SlowZone
+from sim2d.world.world import SlowZone
 
 from .pilots import DT, FAR, STILL, Run, a_pilot
 from .worlds import EXACT, HandMadeMap, room

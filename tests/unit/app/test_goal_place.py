@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.pilot.goal_place import nearest_to, of_its_place
 from app.pilot.params import PilotParams
-from app.pilot.route_following import RouteFollower
+from app.pilot.route_following import RouteFollower, nearest_to, of_its_place
 from ratslam_core import Pose2
 from sim2d import Simulator
 

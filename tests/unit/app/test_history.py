@@ -13,8 +13,8 @@ import pytest
 from app.config import Config
 from app.pilot import Pilot
 from app.session import Session, is_lost
-from app.views import event_watch
-from app.views.event_watch import PLACES_EVERY_S, EventWatch
+from app.views import events
+from app.views.events import PLACES_EVERY_S, EventWatch
 from app.views.history import SERIES_POINTS, STILL_CELLS, History
 
 from .sessions import a_session
@@ -149,7 +149,7 @@ def test_of_a_goal_only_what_is_true_is_noted_and_once(monkeypatch: pytest.Monke
     def seen(state: str, lost: bool) -> list[str]:
         """What is noted of the goal when the pilot says so."""
         monkeypatch.setattr(Pilot, "goal_state", (0, state))
-        monkeypatch.setattr(event_watch, "is_lost", lambda _: lost)
+        monkeypatch.setattr(events, "is_lost", lambda _: lost)
         history.watch()
         return [kind for kind in kinds(history) if kind != "lost"]
 
@@ -218,7 +218,7 @@ def test_places_that_pose_cells_hold_twice_or_in_common_are_noted(monkeypatch: p
     """They are looked for every ten seconds, and noted once when there are more than before."""
     session, found = a_session(), SimpleNamespace(multiple_representations=[1], hash_collisions=[])
     history = History(session)
-    monkeypatch.setattr(event_watch, "find_places", lambda _map: found)
+    monkeypatch.setattr(events, "find_places", lambda _map: found)
 
     def noted(after_s: float) -> list[str]:
         at(session, session.time_s + after_s)

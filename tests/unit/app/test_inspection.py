@@ -7,9 +7,10 @@ import pytest
 
 from app.config import Config
 from app.session import Session
+from app.views.arrays import present_picture, stored_picture
 from app.views.history import History, Visits
 from app.views.inspection import inspect
-from app.views.senses import present_picture, senses_of, stored_picture
+from app.views.snapshots import senses_of
 from web.messages import CellReport, ExperienceReport, Inspect, Report, ViewReport
 
 from .sessions import a_session

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.evaluation.kidnapping import Kidnapping
+from app.evaluation.evaluation import Kidnapping
 from app.headless.run import kidnap_times
 from ratslam_core import Pose2
 

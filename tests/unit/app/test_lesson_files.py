@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from app.gallery.lessons import StoredLessons, check_formulas, formula_text
+from app.gallery import StoredLessons, check_formulas, formula_text
 from app.protocol.files import line_of
 from app.protocol.lesson import (
     ENVIRONMENT,

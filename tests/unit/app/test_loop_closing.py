@@ -7,8 +7,8 @@ import math
 import numpy as np
 
 from app.pilot.known_ground import FAR_M
-from app.pilot.loop_closing import LOOP_AGAIN_S, MIDDLE_M, LoopCloser
 from app.pilot.params import PilotParams
+from app.pilot.seeking import LOOP_AGAIN_S, MIDDLE_M, LoopCloser
 from ratslam_core import Pose2
 
 from .pilots import ANGLES, FAR, OUTWARD

@@ -13,8 +13,8 @@ import pytest
 from app.pilot import Pilot, PilotParams
 from app.pilot.bars import Bars
 from app.pilot.local_movement import LocalMovement
-from app.pilot.loop_closing import LoopCloser
 from app.pilot.route_following import RouteFollower
+from app.pilot.seeking import LoopCloser
 from ratslam_core import Odometry, Pose2
 from sim2d import Simulator, World
 

@@ -14,9 +14,8 @@ from hypothesis import strategies as st
 
 from app.config import Config
 from app.export.mcap_file import write_mcap
-from app.recordings.brain_rules import WIDTH_ERROR, columns_of, rules
 from app.recordings.opening import open_recording
-from app.recordings.playing import Player
+from app.recordings.playing import WIDTH_ERROR, Player, columns_of, rules
 from app.recordings.recording import About, Moment, Wanted, every
 from app.session import Session
 from sim2d import SONAR_ANGLES_RAD, load_world

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from app.recordings.motion import Motion, VisualOdometry
 from app.recordings.recording import About, Moment
-from app.recordings.scan_odometry import ScanOdometry, ScanRules, Walls, points_of
+from app.recordings.scans import ScanOdometry, ScanRules, Walls, points_of
 from ratslam_core import Odometry, Pose2
 from sim2d import Drive, Simulator, load_world
 

@@ -14,8 +14,7 @@ from hypothesis import strategies as st
 
 from app.recordings.formats.lying import by_number
 from app.recordings.formats.pictures import read_picture, unpacked, within
-from app.recordings.formats.problems import TOLD, Problems
-from app.recordings.formats.sensed import Rates, ns_of
+from app.recordings.formats.sensed import TOLD, Problems, Rates, ns_of
 from app.recordings.formats.streamed import BREAK_S, GOES_ON_S, HELD_S, Clock, Held
 from app.recordings.motion import OdometryErrors, WithMadeOdometry, parse_errors
 from app.recordings.opening import Opening, open_recording

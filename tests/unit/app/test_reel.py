@@ -15,7 +15,7 @@ from app.recordings.formats import image_folder
 from app.recordings.motion import OdometryErrors, WithMadeOdometry
 from app.recordings.opening import open_recording
 from app.recordings.recording import Moment, Wanted, every
-from app.recordings.reel import MOST_CURSORS, Reel
+from app.sources.recorded import MOST_CURSORS, Reel
 from tests.recordings import FORMATS, HZ, N, drive
 from tests.unit.app.made_recordings import MadeRecording, recorded
 

@@ -17,7 +17,7 @@ from app.pilot.bars import crosses
 from app.pilot.route_following import COAST_S, LOOK_AROUND_S, LOST_S, NO_HEADWAY_S, REPLAN_S, RouteFollower
 from ratslam_core import Pose2
 from sim2d import Simulator, World
-from sim2d.world.elements import SlowZone
+from sim2d.world.world import SlowZone
 
 from .pilots import DT, EXPLORING, Run, a_pilot, follow
 from .worlds import EXACT, HandMadeMap, chain, room

@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 from app.recordings.recording import About
-from app.recordings.scan_odometry import ScanRules
-from app.recordings.scan_ties import ScanTies
+from app.recordings.scans import ScanRules, ScanTies
 from ratslam_core import ExperienceMap, Odometry, Packet, Pose2, RatSlam, Recognition
 
 from .made_scans import ANGLES, between_walls, room

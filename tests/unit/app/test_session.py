@@ -10,7 +10,7 @@ from app.config import Config
 from app.pilot.behaviours import Behaviour
 from app.protocol.steps import spread_goals
 from app.session import Session
-from app.views.senses import senses_of
+from app.views.snapshots import senses_of
 
 from .sessions import OFFICE, a_session
 

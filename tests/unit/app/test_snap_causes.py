@@ -14,7 +14,7 @@ from app.views.history import History
 from app.views.reasons import SnapCauses, words_of
 from ratslam_core import LocalViewParams, PoseCells, Recognition
 from ratslam_core.extensions.evidence import ODDS
-from ratslam_core.localisation import VisualAssociation
+from ratslam_core.local_view.view_links import VisualAssociation
 from web.messages import SnapCause, WhyReport
 
 from .sessions import OFFICE

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from app import session_laws
+from app import session_snapshot
 from app.session import MOST_TAGS
 from app.session_snapshot import restore_session, take_session
 from app.views.office import tags_view
@@ -76,7 +76,7 @@ def test_tags_are_part_of_the_session() -> None:
     assert (again.tags, again.state_hash()) == (session.tags, session.state_hash())
     again.tags["desk"] = 10**6
     with pytest.raises(ValueError, match="the experience tagged 'desk'"):
-        session_laws.check(again, OFFICE)
+        session_snapshot.check(again, OFFICE)
 
 
 def test_commands_of_tags() -> None:

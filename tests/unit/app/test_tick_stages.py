@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from app.config import Config
-from app.session import SECOND, Session
-from app.stopwatch import KEPT, Stopwatch
+from app.session import KEPT, SECOND, Session, Stopwatch
 from app.views.history import History
 from app.views.snapshots import Snapshots
 from app.views.tick_stages import TITLES, Activity, TickRecorder, Walk, excited, inhibited, normalised
@@ -122,7 +121,7 @@ def test_blind_and_standing_there_is_nothing_to_tell() -> None:
 
 def test_the_stopwatch_keeps_a_hundred_ticks(monkeypatch: pytest.MonkeyPatch) -> None:
     now = [0.0]
-    monkeypatch.setattr("app.stopwatch.time.perf_counter", lambda: now[0])
+    monkeypatch.setattr("app.session.time.perf_counter", lambda: now[0])
     watch = Stopwatch(("a", "b"))
     assert watch.mean_and_worst_ms == {"a": (0.0, 0.0), "b": (0.0, 0.0)}
     for tick in range(KEPT + 50):

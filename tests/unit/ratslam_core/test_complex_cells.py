@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from ratslam_core.local_view.front_ends.complex_cells import AROUND, DARK, GAIN, REACH, ComplexCells, gabor_pair
+from ratslam_core.local_view.front_ends.papers import AROUND, DARK, GAIN, REACH, ComplexCells, gabor_pair
 
 from .scenes import Image
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from app.evaluation.agreement import rmse
 from ratslam_core import ExperienceMap, ExperienceMapParams, Packet, Pose2
 from ratslam_core.extensions import exact_solver
-from ratslam_core.extensions.robust_closures import BAR, SIGMA, contradiction, kept
+from ratslam_core.extensions.exact_solver import BAR, SIGMA, contradiction, kept
 from ratslam_core.pose_graph import relaxation
 from ratslam_core.pose_graph.pose_graph import STEP_SIGMA, TURN_CELLS
 

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from ratslam_core.local_view.front_ends import hue_saturation
-from ratslam_core.local_view.front_ends.hue_saturation import (
+from ratslam_core.local_view.front_ends import papers
+from ratslam_core.local_view.front_ends.papers import (
     CERTAIN_SATURATION,
     FULL_SATURATION,
     HueSaturation,
@@ -83,7 +83,7 @@ def test_features_are_shares_of_the_full_bin(monkeypatch: pytest.MonkeyPatch) ->
     image = np.zeros((24, 32, 3), np.uint8)
     image[:12, :, 0] = image[12:, :, 1] = 200
     for full, share in ((0.8, 159), (0.4, 255)):  # 255 x 0.5 / 0.8, and no more than there is
-        monkeypatch.setattr(hue_saturation, "FULL_BIN", full)
+        monkeypatch.setattr(papers, "FULL_BIN", full)
         features = HueSaturation().look(image).reshape(12, 8)
         assert features[[0, 4], 7].tolist() == [share] * 2
         assert np.count_nonzero(features) == 2

@@ -11,6 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from ratslam_core import LocalView, LocalViewParams, Odometry, RatSlam, RatSlamParams
+from ratslam_core.local_view.front_ends.front_end import grey_template
 from ratslam_core.local_view.front_ends.image_and_sonars import (
     DARK,
     DEAF_DOUBT,
@@ -22,7 +23,6 @@ from ratslam_core.local_view.front_ends.image_and_sonars import (
     ImageAndSonars,
     along_rows,
 )  # fmt: skip
-from ratslam_core.local_view.front_ends.template import grey_template
 
 from .scenes import office, view_of
 

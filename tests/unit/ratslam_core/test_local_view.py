@@ -10,7 +10,8 @@ import pytest
 from numpy.typing import NDArray
 
 from ratslam_core import LocalView, Recognition
-from ratslam_core.local_view.front_ends.template import Template, grey_template
+from ratslam_core.local_view.front_ends.front_end import grey_template
+from ratslam_core.local_view.front_ends.papers import Template
 
 from .scenes import Image, view_of
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from ratslam_core.local_view.front_ends.image_and_sonars import LimitedLevels
 from ratslam_core.local_view.front_ends.laser import LASER_COLUMNS, Laser
-from ratslam_core.local_view.front_ends.limited_levels import LimitedLevels
 
 from .scenes import view_of
 

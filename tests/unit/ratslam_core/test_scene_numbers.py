@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from ratslam_core import LocalView, LocalViewParams, Odometry, RatSlam, RatSlamParams
-from ratslam_core.local_view.front_ends.scene_numbers import SceneNumbers
+from ratslam_core.local_view.front_ends.papers import SceneNumbers
 
 from .scenes import office, view_of
 

@@ -19,7 +19,8 @@ from ratslam_core import (
     Recognition,
 )
 from ratslam_core.beats import Tick
-from ratslam_core.localisation import Localisation, VisualAssociation
+from ratslam_core.local_view.view_links import VisualAssociation
+from ratslam_core.slam import Localisation
 from tests.unit.ratslam_core import literal
 from tests.unit.ratslam_core.drives import LAP, RADIUS_M, STEP_RAD, start
 

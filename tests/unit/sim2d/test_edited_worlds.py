@@ -14,7 +14,7 @@ from sim2d import Drive, FreeSpace, Lamp, OfficeParams, Panel, SensorFrame, Simu
 from sim2d.geometry.grid_cells import connected
 from sim2d.world.world_check import Fault, check_world
 from sim2d.world.world_file import world_from_json
-from sim2d.world.world_writer import WorldText, world_to_json
+from sim2d.world.world_schema import WorldText, world_to_json
 
 from . import rooms
 from .rooms import room, wall

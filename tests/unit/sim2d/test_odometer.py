@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from sim2d import SimParams
-from sim2d.sensors.sensors import report, true_motion, wrap_angle
+from sim2d.sensors import report, true_motion, wrap_angle
 
 EXACT = SimParams(odometry_noise=0.0, odometry_scale_error=0.0, gyro_bias=0.0)
 

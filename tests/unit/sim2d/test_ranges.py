@@ -10,7 +10,7 @@ import pytest
 
 from sim2d import SONAR_ANGLES_RAD, Simulator, Start
 from sim2d.geometry.wall_index import build_index
-from sim2d.sensors.ranges import laser_ranges, sonar_ranges
+from sim2d.sensors import laser_ranges, sonar_ranges
 
 from .rooms import EXACT, FORWARD, STAY, room, run, wall
 

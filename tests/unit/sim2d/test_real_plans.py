@@ -13,8 +13,7 @@ from scipy.spatial import cKDTree
 from sim2d import FreeSpace, World
 from sim2d.geometry.segments import nearest_segment
 from sim2d.importers import import_file
-from sim2d.importers.map_yaml import MapYaml, read_map_yaml
-from sim2d.importers.picture_map import SPECK_PX, free_pixels, read_picture, without_slivers
+from sim2d.importers.picture_map import SPECK_PX, MapYaml, free_pixels, read_map_yaml, read_picture, without_slivers
 from sim2d.importers.trace import choose_floor, ring_area, trace
 
 OURS = Path(__file__).parents[2] / "data"

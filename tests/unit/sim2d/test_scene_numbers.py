@@ -6,7 +6,7 @@ from itertools import pairwise
 import numpy as np
 
 from sim2d import Drive, SimParams, Simulator, load_world
-from sim2d.sensors.sensors import scene_number
+from sim2d.sensors import scene_number
 
 
 def number(x: float, y: float, heading_deg: float, sector_deg: float = 30.0) -> int:

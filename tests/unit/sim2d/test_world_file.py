@@ -15,10 +15,10 @@ import numpy as np
 import pytest
 
 from sim2d import DEFAULT_WORLD, FreeSpace, World, WorldError, load_world, own_worlds, world_from_json, world_names
-from sim2d.world.elements import Box, Daylight, Event, Lamp
 from sim2d.world.json_lines import deeper_than, line_of
+from sim2d.world.world import Box, Daylight, Event, Lamp
 from sim2d.world.world_file import SCHEMA, WORLDS, schema_text
-from sim2d.world.world_writer import world_to_json
+from sim2d.world.world_schema import world_to_json
 from sim2d.worlds.make import MADE
 from tests.unit.disk.full import full_after
 

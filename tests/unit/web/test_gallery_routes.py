@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from starlette.testclient import TestClient
 
-from app.gallery.lessons import StoredLessons
+from app.gallery import StoredLessons
 from tests.unit.web.doubles import House, house
 from web.http.gallery import Axis, Card, Cell, Detail, Dot, Plan, Results
 from web.http.security import Bucket

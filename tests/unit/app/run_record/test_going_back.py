@@ -12,10 +12,10 @@ from app.engine.engine import Engine
 from app.recordings.opening import open_recording
 from app.recordings.playing import Player
 from app.recordings.recording import About, Moment
-from app.recordings.reel import Reel
 from app.run_record import keyframes
 from app.run_record.keyframes import TimeMachine
 from app.session import Session, played_session
+from app.sources.recorded import Reel
 from app.views.history import History
 from tests.unit.app.engines import an_engine, of_kind, run_for, tell
 from tests.unit.app.made_recordings import MadeRecording, recorded
