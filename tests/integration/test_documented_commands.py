@@ -161,7 +161,7 @@ class Made:
             (self.work / name).write_text(blocks[0], encoding="utf-8")
         (self.work / "mine.toml").write_text("[pilot]\ncruise_speed = 0.3\n", encoding="utf-8")
         self.names = {
-            "tub": str(data / "office-car"), "data": str(data.parent), "brain": str(next((kept / "brains").glob("*.npz"))),
+            "tub": str(data / "office-car"), "data": str(data.parent), "brain": str(next((kept / "runs").glob("*/state.npz"))),
             "world": str(ROOT / "sim2d" / "worlds" / "loop.json"), "situation": "a.situation.json",
             "link": f"http://127.0.0.1:8000/#{moment['link']}", "lesson": "lesson.toml",
             "trial": "$(sed -n 2p experiments/trial/trial.csv | cut -d, -f1)",
