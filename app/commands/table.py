@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from app.commands import brain, lessons, office, robot, time, transport
+from app.commands import brain, office, protocol, robot, time, transport
 from app.commands.brain import inject_packet
-from app.commands.experiments import after_order, watch_experiment
 from app.commands.outcome import Later, Outcome, Working
+from app.config.presets import values_of
 from app.engine.engine import Engine
 from web import messages as m
 from web.messages.commands import CommandModel, Needs
@@ -49,14 +49,14 @@ COMMANDS: dict[type[CommandModel], Handler] = {
     m.RedoEdit: office.redo_edit,
     m.Inspect: robot.inspect,
     m.InjectPacket: inject_packet,
-    m.WatchExperiment: watch_experiment,
-    m.BeginLesson: lessons.begin_lesson,
-    m.Predict: lessons.predict,
-    m.Vote: lessons.vote,
-    m.ShowLesson: lessons.show_lesson,
-    m.LessonAgain: lessons.lesson_again,
-    m.EndLesson: lessons.end_lesson,
-    m.RunUntil: lessons.run_until,
+    m.WatchExperiment: protocol.watch_experiment,
+    m.BeginLesson: protocol.begin_lesson,
+    m.Predict: protocol.predict,
+    m.Vote: protocol.vote,
+    m.ShowLesson: protocol.show_lesson,
+    m.LessonAgain: protocol.lesson_again,
+    m.EndLesson: protocol.end_lesson,
+    m.RunUntil: protocol.run_until,
     m.Seek: time.seek,
     m.BackToNow: time.back_to_now,
     m.GoOnFromHere: time.go_on_from_here,
@@ -128,8 +128,22 @@ def _commanded(engine: Engine, handler: Handler, command: CommandModel) -> Outco
         outcome = m.Refused(command.at, values[0] if len(values) == 1 else values, str(error))
     if outcome is None:
         engine.shown.snapshots.refresh()
-        after_order(engine, command)
+        _ordered(engine, command)
     for words in run.session.warnings:
         if words not in before:
             run.event_log.note("warning", words)
     return outcome
+
+
+def _ordered(engine: Engine, command: CommandModel) -> None:
+    """An order has been carried out: a trial that is being watched may end by it, or become another run."""
+    before = engine.run.config_before
+    if before is not None and isinstance(command, (m.SetParameter, m.UsePreset)):
+        # What somebody sets is wanted in the next run, too; what the trial or lesson had set goes with it.
+        one = isinstance(command, m.SetParameter)
+        engine.run.config_before = before.with_values({command.name: command.value} if one else values_of(command.name))
+    for guide in engine.run.guides:
+        if command.ends:
+            guide.ordered(command.ends)
+        elif command.alters:
+            guide.alter()

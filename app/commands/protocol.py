@@ -1,4 +1,5 @@
-"""Lessons: beginning one, predicting, voting, letting it happen; and running until something happens."""
+"""What follows a protocol: watching a trial of an experiment; lessons, which are begun, predicted, voted on and shown; running
+until something happens."""
 
 from __future__ import annotations
 
@@ -6,7 +7,9 @@ from app.commands.outcome import Outcome
 from app.engine.engine import Engine
 from app.engine.lesson_run import LessonRun, Teaching
 from app.engine.waiting import RunUntil
+from app.engine.watched_trial import CHANGED
 from app.protocol.conditions import read_until
+from app.protocol.experiment import Experiment, catalogue, check_levels, chosen_trial
 from app.protocol.lesson import find_lesson
 from web import messages as m
 
@@ -99,3 +102,41 @@ def _open(engine: Engine) -> LessonRun:
     if lesson.state not in ("scene", "predict"):
         raise ValueError("it has been shown already: predictions come first")
     return lesson
+
+
+def watch_experiment(engine: Engine, command: m.WatchExperiment) -> Outcome:
+    """Begin the trial in a new run, and play it. The id of the one that is being watched begins that one again."""
+    now = engine.run.trial
+    if now is not None and command.trial == now.trial.id:
+        engine.begin_trial(now.trial, now.title, command.moment_s)
+        return None
+    known = {experiment.name: experiment for experiment in catalogue()}
+    experiment = known.get(command.experiment)
+    if experiment is None:
+        reason = f"there is no experiment {command.experiment!r}; expected one of: {', '.join(known)}"
+        return m.Refused("experiment", command.experiment, reason)
+    wrong = _wrong(experiment, command)
+    if wrong is not None:
+        return wrong
+    try:
+        trial = chosen_trial(experiment, command.engine, command.levels, command.seed, command.quick)
+        engine.begin_trial(trial, experiment.title, command.moment_s)
+    except ValueError as error:
+        return m.Refused("experiment", command.experiment, str(error))
+    if command.trial is not None and command.trial != trial.id:
+        engine.run.event_log.note("warning", CHANGED)
+    return None
+
+
+def _wrong(experiment: Experiment, command: m.WatchExperiment) -> m.Refused | None:
+    if command.engine is not None and command.engine not in experiment.engines:
+        engines = ", ".join(experiment.engines)
+        return m.Refused(
+            "engine", command.engine, f"{experiment.name} has no engine {command.engine!r}; it has: {engines}"
+        )
+    if command.levels is not None:
+        try:
+            check_levels(experiment, command.levels)
+        except ValueError as error:
+            return m.Refused("levels", command.levels, str(error))
+    return None
