@@ -1,4 +1,4 @@
-from .kept import kept_folder
+from .kept import user_folder
 from .kinds import kind
 from .state_codec import State, encode, write_state
 from .state_copy import copy_state
@@ -10,11 +10,11 @@ __all__ = [
     "copy_state",
     "decode",
     "encode",
-    "kept_folder",
     "kind",
     "read_state",
     "require_writable",
     "sweep",
+    "user_folder",
     "whole_file",
     "write_state",
     "write_whole",

@@ -1,4 +1,4 @@
-"""The folder of what a person keeps: `.ratslam` in the home directory."""
+"""Where a person keeps things: in `.ratslam` in the home directory, or wherever they say."""
 
 from __future__ import annotations
 
@@ -6,9 +6,13 @@ import os
 from pathlib import Path
 
 
-def kept_folder() -> Path:
-    """The folder, which need not exist. ValueError when there is no home: an empty HOME is none, and neither is `/`."""
-    return home_folder() / ".ratslam"
+def user_folder(name: str) -> Path:
+    """Where a person's own `runs`, `worlds`, `lessons` or `experiments.sqlite` lie: RATSLAM_RUNS and so on, else
+    `.ratslam/NAME` in the home directory. It need not exist.
+
+    ValueError when there is no home: an empty HOME is none, and neither is `/`."""
+    variable = f"RATSLAM_{name.partition('.')[0].upper()}"
+    return Path(os.environ.get(variable) or home_folder() / ".ratslam" / name)
 
 
 def home_folder() -> Path:

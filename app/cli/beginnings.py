@@ -16,7 +16,7 @@ from app.config import Config
 from app.orders import SMALLEST_M
 from app.run_record.link import KEY, read_situation
 from app.run_record.situation import Situation
-from disk import kept_folder
+from disk import user_folder
 from disk.limits import SITUATION_BYTES
 from ratslam_core import RatSlam
 from sim2d import DEFAULT_WORLD, World, own_worlds, world_from_json
@@ -82,7 +82,7 @@ def _kept_brain(args: argparse.Namespace) -> KeptBrain | None:
 
 def _of_before() -> str:
     """Earlier programs kept brains in a folder of their own."""
-    folder = kept_folder() / "brains"
+    folder = user_folder("brains")
     return f"; those of an earlier version are in {folder}: --brain FILE takes one" if folder.exists() else ""
 
 

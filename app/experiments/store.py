@@ -9,7 +9,6 @@ import contextlib
 import hashlib
 import json
 import math
-import os
 import sqlite3
 from collections.abc import Callable, Generator, Iterable, Sequence
 from dataclasses import dataclass
@@ -22,7 +21,7 @@ from pydantic import TypeAdapter
 from app.code_version import code_version
 from app.protocol.steps import Step
 from app.protocol.trial import Result, Trial, text_of
-from disk import kept_folder
+from disk import user_folder
 from disk.locks import require_record_locks
 
 VERSION = 1  # of these tables, kept as the file's user_version
@@ -96,8 +95,8 @@ class StoredTrial:
 
 
 def default_path() -> Path:
-    """RATSLAM_EXPERIMENTS, or `.ratslam/experiments.sqlite` in the home directory. ValueError without a home."""
-    return Path(os.environ.get("RATSLAM_EXPERIMENTS") or kept_folder() / "experiments.sqlite")
+    """ValueError without a home."""
+    return user_folder("experiments.sqlite")
 
 
 class Store:

@@ -4,7 +4,6 @@ to write one); those that come with the program, and the user's own in ~/.ratsla
 from __future__ import annotations
 
 import math
-import os
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from difflib import get_close_matches
@@ -19,7 +18,7 @@ from app.protocol.conditions import Until
 from app.protocol.files import read_part
 from app.protocol.measures import MEASURE_OF, MEASURES, Measure, measure_of, measures_for, reading_of
 from app.protocol.steps import Line, Part, Seconds, Step, Text, Values, WorldName
-from disk import kept_folder
+from disk import user_folder
 from disk.words import lines
 from web.messages import Command
 from web.messages.commands import Name
@@ -332,12 +331,11 @@ class Lesson(Part):
 
 
 _CATALOGUE = Path(__file__).with_name("lessons")
-ENVIRONMENT = "RATSLAM_LESSONS"
 
 
 def own_folder() -> Path:
-    """RATSLAM_LESSONS, or `.ratslam/lessons` in the home directory: where a teacher's own lie. ValueError without a home."""
-    return Path(os.environ.get(ENVIRONMENT) or kept_folder() / "lessons")
+    """Where a teacher's own lie. ValueError without a home."""
+    return user_folder("lessons")
 
 
 def read_lesson(path: Path) -> Lesson:

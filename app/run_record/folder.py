@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import contextlib
-import os
 import shutil
 import time
 from collections.abc import Iterator
 from pathlib import Path
 
-from disk import kept_folder
+from disk import user_folder
 from disk.locks import lock
 
 LINES, BRAIN, STATE = "run.jsonl", "brain.npz", "state.npz"
@@ -20,8 +19,8 @@ MOST_STATES = 3  # runs that keep a state, with its brain; the others are resume
 
 
 def runs_folder() -> Path:
-    """RATSLAM_RUNS, or `.ratslam/runs` in the home directory; it need not exist. ValueError without a home."""
-    return Path(os.environ.get("RATSLAM_RUNS") or kept_folder() / "runs")
+    """It need not exist. ValueError without a home."""
+    return user_folder("runs")
 
 
 def all_runs() -> list[Path]:

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import contextlib
 import json
-import os
 import re
 from functools import lru_cache
 from pathlib import Path
 
-from disk import kept_folder, sweep, whole_file, write_whole
+from disk import sweep, user_folder, whole_file, write_whole
 from disk.words import plain
 
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,39}")
@@ -17,8 +16,8 @@ NAME_RULE = "1 to 40 letters, digits, - and _, beginning with a letter or digit"
 
 
 def folder() -> Path:
-    """RATSLAM_WORLDS, or `.ratslam/worlds` in the home directory; it need not exist. ValueError if there is no home."""
-    return Path(os.environ.get("RATSLAM_WORLDS") or kept_folder() / "worlds")
+    """It need not exist. ValueError if there is no home."""
+    return user_folder("worlds")
 
 
 def is_name(name: str) -> bool:

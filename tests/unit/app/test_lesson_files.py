@@ -9,7 +9,6 @@ import pytest
 from app.gallery import StoredLessons, check_formulas, formula_text
 from app.protocol.files import line_of
 from app.protocol.lesson import (
-    ENVIRONMENT,
     Finding,
     Formula,
     Symbol,
@@ -104,7 +103,7 @@ def test_symbols_are_marked_by_their_parameters_and_only_those() -> None:
 def test_a_lesson_of_ones_own_is_listed_and_a_wrong_one_says_why(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setenv(ENVIRONMENT, str(tmp_path))
+    monkeypatch.setenv("RATSLAM_LESSONS", str(tmp_path))
     (tmp_path / "mine.toml").write_text(TEXT.replace('name = "kidnapped"', 'name = "mine"'))
     (tmp_path / "wrong.toml").write_text(TEXT.replace("limit_s = 180", "limit_s = -1"))
     (tmp_path / "better.toml").write_text(TEXT.replace('title = "Kidnapped"', 'title = "My kidnap"'))

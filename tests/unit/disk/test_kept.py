@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from disk import kept_folder
+from disk import user_folder
 from sim2d import World, WorldError, load_world, own_worlds
 
 
@@ -25,15 +25,15 @@ def account(home: str | None, monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_without_HOME_the_account_tells(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:  # noqa: N802
     monkeypatch.setenv("HOME", str(tmp_path / "mine"))
-    assert kept_folder() == tmp_path / "mine" / ".ratslam"
+    assert user_folder("lessons") == tmp_path / "mine" / ".ratslam" / "lessons"
     account(str(tmp_path), monkeypatch)
     monkeypatch.setenv("HOME", "")
-    assert kept_folder() == tmp_path / ".ratslam"
+    assert user_folder("lessons") == tmp_path / ".ratslam" / "lessons"
     monkeypatch.delenv("HOME")
-    assert kept_folder() == tmp_path / ".ratslam"
+    assert user_folder("lessons") == tmp_path / ".ratslam" / "lessons"
     monkeypatch.undo()
     monkeypatch.delenv("HOME", raising=False)
-    assert kept_folder() == Path(pwd.getpwuid(os.getuid()).pw_dir) / ".ratslam"
+    assert user_folder("lessons") == Path(pwd.getpwuid(os.getuid()).pw_dir) / ".ratslam" / "lessons"
 
 
 def test_the_root_is_no_home(monkeypatch: pytest.MonkeyPatch, subtests: pytest.Subtests) -> None:
@@ -43,7 +43,7 @@ def test_the_root_is_no_home(monkeypatch: pytest.MonkeyPatch, subtests: pytest.S
             monkeypatch.setenv("HOME", home)
             account(account_home, monkeypatch)
             with pytest.raises(ValueError, match=r"there is no home directory .* set HOME to a folder of yours"):
-                kept_folder()
+                user_folder("lessons")
             assert own_worlds.names() == ()
             own_worlds.tidy()
             assert isinstance(load_world("office"), World)
