@@ -122,7 +122,7 @@ class Session:
     def _think(self, watch: Lap) -> Estimate:
         """One step of the brain on what is sensed in this tick, compared with the truth where that is known."""
         self.odometry = self.sensed.odometry  # what the brain was told in its last step
-        estimate = self.sensed.tell(self.brain, self.ties, watch)
+        estimate = self.sensed.step(self.brain, self.ties, watch)
         truth = self.source.truth
         if truth is not None:
             map_ = self.brain.experience_map

@@ -30,7 +30,7 @@ def make_run(world: str, hours: float, room: PastRoom) -> TimeMachine:
     session = Session(load_world(world), 1)
     history = History(session)
     machine = TimeMachine(session, history, room)
-    session.on_order = machine.told
+    session.on_order = machine.note_order
     began_s, cpu_s, keeping_s = time.monotonic(), time.process_time(), 0.0
     for tick in range(1, round(HOUR_TICKS * hours) + 1):
         session.tick()

@@ -227,7 +227,7 @@ def _serve(serving: Serving, first: First, compiling: Compiling) -> int:
         raise ValueError(str(error)) from None
 
     waking = Waking(engine, compiling)
-    dashboard.on_ready, engine.on_stillborn = partial(_tell, serving, dashboard), dashboard.stop
+    dashboard.on_ready, engine.on_startup_error = partial(_tell, serving, dashboard), dashboard.stop
     waking.start()
     if runs is not None:
         runs.start()
@@ -237,8 +237,8 @@ def _serve(serving: Serving, first: First, compiling: Compiling) -> int:
         waking.stop(ENGINE_PATIENCE_S)
         if runs is not None:
             runs.stop()
-    if engine.stillborn is not None:
-        raise ValueError(f"the engine could not begin: {engine.stillborn}")
+    if engine.startup_error is not None:
+        raise ValueError(f"the engine could not begin: {engine.startup_error}")
     return 0
 
 

@@ -19,7 +19,7 @@ from app.session import Session
 from app.session_snapshot import restore_session
 from disk import State, require_writable, whole_file
 from ratslam_live import command_of
-from web.http.asking import Submit, told
+from web.http.asking import Submit, ask_engine
 from web.http.commands import Malformed
 from web.http.export import Offer, Wish
 from web.messages import ReadSession
@@ -231,7 +231,7 @@ class PageExports:
 async def _state(submit: Submit) -> State | None:
     """None: the session is that of a recording."""
     try:
-        state = (await told(submit, ReadSession(), COPY_TIMEOUT_S)).result
+        state = (await ask_engine(submit, ReadSession(), COPY_TIMEOUT_S)).result
     except Malformed as error:
         raise ValueError(str(error)) from None
     assert state is None or isinstance(state, State)

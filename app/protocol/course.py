@@ -81,7 +81,7 @@ class Course:
         self.visits: list[Visited] = []
         self.moments: list[Moment] = []
         self.met_at_s = math.inf  # when what was waited for happened
-        self._told = 0
+        self._reported = 0
         check_steps(session, self.steps)
 
     def ticks(self) -> Iterator[str]:
@@ -94,9 +94,9 @@ class Course:
         for step in steps:
             yield from step.carry_out(self)
 
-    def untold(self) -> list[Moment]:
-        """What was written down since this was asked last."""
-        new, self._told = self.moments[self._told :], len(self.moments)
+    def new_moments(self) -> list[Moment]:
+        """Those noted since the last call."""
+        new, self._reported = self.moments[self._reported :], len(self.moments)
         return new
 
     @property

@@ -31,20 +31,20 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Reading:
-    """words: what it is; told: a number of it, as in str.format; never: said when it did not happen (infinite)."""
+    """words: what it is; pattern: for its value, as in str.format; never: said when it did not happen (infinite)."""
 
     words: str
-    told: str = "{:.0f}"
+    pattern: str = "{:.0f}"
     never: str = "never"
 
     def shown(self, value: float) -> str:
         """A value in words."""
         if math.isnan(value):
             return "unknown"
-        return self.told.format(value) if math.isfinite(value) else self.never
+        return self.pattern.format(value) if math.isfinite(value) else self.never
 
 
-S, M, CM, SHARE = "{:.1f} s", "{:.1f} m", "{:.2f} m", "{:.0%}"  # how readings are told
+S, M, CM, SHARE = "{:.1f} s", "{:.1f} m", "{:.2f} m", "{:.0%}"  # patterns of readings
 
 
 class Subject:

@@ -88,7 +88,7 @@ class Player:
         brain, ties, reader = self.brain(), self.new_ties(), self.reader()
         for moment in self.recording.moments():
             sensed = reader.read(moment)
-            yield Step(moment, sensed.tell(brain, ties), brain, sensed.odometry)
+            yield Step(moment, sensed.step(brain, ties), brain, sensed.odometry)
 
 
 @kind("moment reader/1")

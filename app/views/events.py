@@ -15,7 +15,7 @@ from app.views.reasons import Reasons, words_of
 from disk import kind
 from ratslam_core import find_places
 from web.messages import Closure, Event, EventKind, GoalState, Packet, Snap, WhyReport
-from web.messages.told import goal_meaning, odds_words
+from web.messages.robot_status import goal_meaning, odds_words
 
 MOST_EVENTS = 2000
 

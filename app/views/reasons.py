@@ -16,7 +16,7 @@ from app.views.belief import SpokenFor
 from ratslam_core import Packet, Pose2
 from ratslam_core.extensions.evidence import Belief
 from web import messages as m
-from web.messages.told import odds_words
+from web.messages.robot_status import odds_words
 
 MOST_KEPT = 200
 MOST_VIEWS = 4

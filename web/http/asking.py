@@ -35,7 +35,7 @@ class NoAnswer(Declined):
     """The engine did not answer in time, or failed at the command; `status` is the HTTP status."""
 
 
-async def told(submit: Submit, command: Command | EngineRequest, timeout_s: float | None = None) -> Accepted:
+async def ask_engine(submit: Submit, command: Command | EngineRequest, timeout_s: float | None = None) -> Accepted:
     """The engine's answer to a command that it has taken. Raises Malformed when it refuses, and NoAnswer."""
     answer = asyncio.wrap_future(submit(command))
     if timeout_s is None:
@@ -55,7 +55,7 @@ async def told(submit: Submit, command: Command | EngineRequest, timeout_s: floa
 
 
 async def world_now(submit: Submit) -> tuple[World, OfficeEdition]:
-    result = (await told(submit, ReadWorld())).result
+    result = (await ask_engine(submit, ReadWorld())).result
     assert isinstance(result, tuple)
     return cast("tuple[World, OfficeEdition]", result)
 

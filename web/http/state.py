@@ -33,7 +33,7 @@ from web.messages import (
     ViewReport,
     WhyReport,
 )
-from web.messages.told import Facts, goal_told, robot_told
+from web.messages.robot_status import Facts, goal_status, robot_status
 
 SEES = "local_view.enabled"
 WORTH_M = 0.05  # nothing would be seen of a smaller correction
@@ -187,7 +187,7 @@ def _told(snapshot: Snapshot) -> dict[str, Any]:
         over=snapshot.recording is not None and snapshot.recording.over,
         played_ahead=situation is not None and situation.state == "playing",
     )  # fmt: skip
-    return {"robot": asdict(robot_told(facts)), "goal": None if goal is None else asdict(goal_told(goal))}
+    return {"robot": asdict(robot_status(facts)), "goal": None if goal is None else asdict(goal_status(goal))}
 
 
 def title(snapshot: Snapshot) -> str:

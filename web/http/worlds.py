@@ -22,7 +22,7 @@ from sim2d import World, WorldError, WorldText, own_worlds, world_names, world_t
 from sim2d.importers import import_world
 from sim2d.importers.plan import empty_room
 from sim2d.world.world_file import holds
-from web.http.asking import ERRORS, Body, Name, Submit, Title, checked_body, json_response, takes, told, world_now
+from web.http.asking import ERRORS, Body, Name, Submit, Title, ask_engine, checked_body, json_response, takes, world_now
 from web.http.commands import Declined, Malformed, Problem, wrong
 from web.http.security import MAX_PLAN_BYTES, PLAN_PATH, Limits
 from web.http.state import office_fields, to_json
@@ -195,7 +195,7 @@ def _not_taken(name: str) -> None:
 
 
 async def _begin(submit: Submit, world: World, filed: bool, said: list[str]) -> bytes:
-    name = (await told(submit, OpenWorld(world, filed), OPEN_TIMEOUT_S)).result
+    name = (await ask_engine(submit, OpenWorld(world, filed), OPEN_TIMEOUT_S)).result
     x0, y0, x1, y1 = world.bounds
     size = [round(x1 - x0, 3), round(y1 - y0, 3)]
     about = {"name": name, "title": world.title, "walls": len(world.walls), "starts": len(world.starts)}
@@ -243,10 +243,10 @@ async def _save(request: Request, submit: Submit, limits: Limits) -> bytes:
     named = replace(was, name=wish.name, title=title)
     text = await asyncio.to_thread(world_to_json, named)
     path = await _done(wish.name, lambda: own_worlds.save(wish.name, text))
-    await told(submit, WorldSaved(was, named))
+    await ask_engine(submit, WorldSaved(was, named))
     if wish.rename:
         await _done(was.name, lambda: own_worlds.delete(was.name))
-        await told(submit, WorldDeleted(was.name))
+        await ask_engine(submit, WorldDeleted(was.name))
     return to_json({"name": wish.name, "file": str(path)})
 
 
@@ -260,7 +260,7 @@ async def _is_ours(name: str, now: str, submit: Submit) -> None:
     if name != now:
         reason = f"there is a world {name!r} already; replace it or choose another name"
         raise Malformed([wrong("replace", False, reason)])
-    filed = (await told(submit, ReadFiled(name))).result
+    filed = (await ask_engine(submit, ReadFiled(name))).result
     if not isinstance(filed, World) or not await asyncio.to_thread(holds, own_worlds.folder() / f"{name}.json", filed):
         reason = (
             f"somebody else has saved {name!r} since it was read here; replace what is there or choose another name"
@@ -273,14 +273,14 @@ async def _delete(request: Request, submit: Submit, limits: Limits) -> bytes:
     if name in dict(world_names()):
         raise Malformed([wrong("name", name, f"{name} comes with the program and stays")])
     kept = await _done(name, lambda: own_worlds.delete(name))
-    await told(submit, WorldDeleted(name))
+    await ask_engine(submit, WorldDeleted(name))
     return to_json({"name": name, "file": str(kept)})
 
 
 async def _restore(request: Request, submit: Submit, limits: Limits) -> bytes:
     name = (await checked_body(request, NamedWorld, limits)).name
     title = await _done(name, lambda: own_worlds.restore(name))
-    await told(submit, WorldRestored(name, title))
+    await ask_engine(submit, WorldRestored(name, title))
     return to_json({"name": name, "title": title})
 
 

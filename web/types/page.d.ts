@@ -148,7 +148,7 @@ type Moving = { walkers: Record<string, [number, number, number]>; boxes: string
 type Walk = { at: number; of: number; title: string; words: string };
 type OfficeFields = { edition: number; undo: string | null; redo: string | null; saved: boolean };
 type RecordingFields = { name: string; format: string; moments: number; seconds: number; has: string[]; over: boolean };
-// web/messages/told.py
+// web/messages/robot_status.py
 type Chip = { icon: string; tone: string; words: string };
 type GoalChip = { icon: string; words: string; short: string; metres: string; seconds: string };
 type PageFields = {

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from web.messages import CellReport, ExperienceReport, Ghost, Pose, Spread, ViewReport, WhyReport
-from web.messages.told import seconds_words
+from web.messages.robot_status import seconds_words
 from web.viewer.fits import CellFit, MapFit, error_line, walls_in_map
 from web.viewer.marks import cell_marks, graph, robot
 from web.viewer.marks.inspected import linked_cells, links_of, spots_of
