@@ -21,7 +21,7 @@ from app.views.history import History
 from benchmarks.machine import verdict
 from sim2d import load_world
 
-HOUR_TICKS, TELL_AFTER = 36_000, 18_000
+HOUR_TICKS, REPORT_AFTER = 36_000, 18_000
 LONG_HOURS, BAR_S, LONG_BAR_S = 1.0, 0.3, 1.0  # longer runs than this have another bar
 
 
@@ -38,7 +38,7 @@ def make_run(world: str, hours: float, room: PastRoom) -> TimeMachine:
         before = time.thread_time()
         machine.ticked()
         keeping_s += time.thread_time() - before
-        if tick % TELL_AFTER == 0:
+        if tick % REPORT_AFTER == 0:
             ticks = np.diff([frame.tick for frame in machine.live.keyframes])
             print(
                 f"{tick / HOUR_TICKS:4.1f} h: {time.monotonic() - began_s:.0f} s on the clock, "

@@ -16,7 +16,7 @@ from app.session import Session
 
 MomentKind = Literal["tagged", "kidnap", "packet", "recovered", "reached", "failed", "step", "end"]
 Progress = Callable[[float, str], None]  # simulated seconds since the last call, what is being done
-TELL_AFTER = 10  # ticks between two calls of it
+REPORT_AFTER = 10  # ticks between two calls of it
 
 
 @dataclass(frozen=True, slots=True)
@@ -201,7 +201,10 @@ class _Visit:
 
 
 def run_ticks(
-    course: Course, ticks: Iterable[str], watchers: Sequence[Callable[[], object]] = (), tell: Progress | None = None
+    course: Course,
+    ticks: Iterable[str],
+    watchers: Sequence[Callable[[], object]] = (),
+    progress: Progress | None = None,
 ) -> None:
     """Run a tick of the session after each of these, and call all watchers after it."""
     session, since_s = course.session, course.session.time_s
@@ -209,6 +212,6 @@ def run_ticks(
         session.tick()
         for watch in watchers:
             watch()
-        if tell is not None and session.tick_count % TELL_AFTER == 0:
-            tell(session.time_s - since_s, what)
+        if progress is not None and session.tick_count % REPORT_AFTER == 0:
+            progress(session.time_s - since_s, what)
             since_s = session.time_s

@@ -215,7 +215,7 @@ class LogWriter:
         try:
             write(*values)
         except OSError as error:  # it waits in the log
-            self._tell(f"the run cannot be kept in {self._folder}: {error.strerror or error}; it goes on, and is kept "
+            self._complain_once(f"the run cannot be kept in {self._folder}: {error.strerror or error}; it goes on, and is kept "
                        "when there is room")  # fmt: skip
         except ValueError as error:
             self._give_up(error)
@@ -225,9 +225,9 @@ class LogWriter:
         self._given_up = True
         self._feed.end("given up")
         where = f" in {self._folder}" if self._folder.name else ""
-        self._tell(f"the run is not kept{where}: {why or error}; it goes on")
+        self._complain_once(f"the run is not kept{where}: {why or error}; it goes on")
 
-    def _tell(self, words: str) -> None:
+    def _complain_once(self, words: str) -> None:
         if not self._complained:
             self._complained = True
             self._complain(words)

@@ -122,7 +122,7 @@ SAME_M, SAME_RAD = 0.5, 0.4  # in a tick no hypothesis goes farther
 BARS = 24
 
 
-class SpokenFor:
+class HypothesisHistory:
     """What spoke for the place that a robot believes, and what against it. Call `watch` after each tick."""
 
     def __init__(self) -> None:

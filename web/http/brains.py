@@ -201,13 +201,13 @@ class KeptOffer:
         """Run it again to where it was, in a thread; give it up when the page that asked has gone or cancelled."""
         gone = threading.Event()
 
-        def tell(share: float) -> None:
+        def report(share: float) -> None:
             self.done = share
             if gone.is_set():
                 raise GivenUpError
 
         self.done = 0.0
-        running = asyncio.create_task(asyncio.to_thread(go_on, tell))
+        running = asyncio.create_task(asyncio.to_thread(go_on, report))
         try:
             while not (await asyncio.wait({running}, timeout=LOOK_S))[0]:
                 if await request.is_disconnected():

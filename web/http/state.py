@@ -160,7 +160,7 @@ def page_fields(snapshot: Snapshot) -> dict[str, Any]:
     return {
         "run": snapshot.run,
         "doing": snapshot.doing,
-        "told": _told(snapshot),
+        "status": _status(snapshot),
         "fault": snapshot.fault,
         "real_time_factor": snapshot.real_time_factor,
         "title": title(snapshot),
@@ -177,7 +177,7 @@ def page_fields(snapshot: Snapshot) -> dict[str, Any]:
     }
 
 
-def _told(snapshot: Snapshot) -> dict[str, Any]:
+def _status(snapshot: Snapshot) -> dict[str, Any]:
     """The robot's sentence and the goal's."""
     goal, time, situation, belief = snapshot.goal, snapshot.time, snapshot.situation, snapshot.belief
     facts = Facts(
