@@ -1,5 +1,5 @@
-"""What commands act on: the run that is open with its branches, whether it plays, and who waits for its ticks. It knows
-neither queue nor page."""
+"""What commands act on: the run that is open with its branches, whether it plays, and who waits for its ticks. It depends
+on neither queue nor page."""
 
 from __future__ import annotations
 

@@ -138,7 +138,7 @@ _NUMBERS = struct.Struct("<12d")
 
 
 def tick_checksum(session: Session) -> bytes:
-    """Tells the tick that the session has just run from another: where the robot is, what it sees, where it believes to be. It
+    """A checksum of the tick that the session has just run: ground truth, what is sensed, pose estimate. It
     costs some microseconds; a `state_hash` ten thousand times that.
 
     Of the picture it holds how much it differs from the most similar view: a sum over the picture alone would cost more

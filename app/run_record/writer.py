@@ -1,4 +1,4 @@
-"""A run on its way to the disk while it goes on, through three threads, none of which the engine waits for: the engine tells
+"""A run on its way to the disk while it goes on, through three threads, none of which the engine waits for: the engine gives
 ticks, orders and now and then a copy of the session to a `RunFeed`; the keeper's thread turns them into the lines of a
 `LogWriter`; copies are hashed and saved in a third (states.py). A branch is a run of its own, with the other's past up to
 where it left it."""

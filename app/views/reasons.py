@@ -20,7 +20,7 @@ from web.messages.robot_status import odds_words
 
 MOST_KEPT = 200
 MOST_VIEWS = 4
-LOOKS_BACK_S = 10.0  # a robot that feels lost: what it recognised in this time
+LOOKS_BACK_S = 10.0  # a lost robot: the views recognised in this time
 
 
 class Reasons:

@@ -27,7 +27,7 @@ ERRORS: dict[int | str, dict[str, Any]] = {status: {"model": Problem} for status
 Submit = Callable[[Command | EngineRequest], "Future[Accepted | Refused]"]
 
 ANSWER_TIMEOUT_S = 3.0
-PAST_TIMEOUT_S = 300.0  # the page is told how far it is, and a newer wish ends it
+PAST_TIMEOUT_S = 300.0  # the page shows how far it is, and a newer request ends it
 TICK_TIMEOUT_S = 0.1  # a step is answered when its ticks are done
 
 

@@ -118,11 +118,11 @@ def add_worlds(app: FastAPI, latest: Latest[Snapshot], submit: Submit) -> None:
               responses={200: {"model": Opened}, **ERRORS})  # fmt: skip
     async def open_files(request: Request) -> Response:
         """Begin anew in a world or plan. When that is not possible, the session stays as it was."""
-        wish = await checked_body(request, OpenFiles, limits, MAX_PLAN_BYTES)  # one that stalls holds up no other
+        body = await checked_body(request, OpenFiles, limits, MAX_PLAN_BYTES)  # one that stalls holds up no other
         if importing.locked():
             raise Declined.of(429, "another plan is being imported; wait until it is there")
         async with importing:
-            return json_response(await _open(wish, latest, submit))
+            return json_response(await _open(body, latest, submit))
 
     @app.post("/api/worlds/new", tags=["worlds"], openapi_extra=takes(NewWorld),
               responses={200: {"model": Opened}, **ERRORS})  # fmt: skip
@@ -138,14 +138,14 @@ async def _read(submit: Submit, text: WorldText) -> bytes:
     return head[:-1] + b',"world":' + written.encode() + b"}"
 
 
-async def _open(wish: OpenFiles, latest: Latest[Snapshot], submit: Submit) -> bytes:
-    files = {_plain(file.name): _bytes(file) for file in wish.files}
+async def _open(body: OpenFiles, latest: Latest[Snapshot], submit: Submit) -> bytes:
+    files = {_plain(file.name): _bytes(file) for file in body.files}
     _, snapshot = latest.get()
     office = None if snapshot is None or snapshot.recording is not None else snapshot.world
     radius = None if office is None else office.robot_radius_m
     said: list[str] = []
     try:
-        world = await asyncio.to_thread(import_world, _main(files), files, wish.scale_m, wish.seed, radius, said.append)
+        world = await asyncio.to_thread(import_world, _main(files), files, body.scale_m, body.seed, radius, said.append)
     except WorldError as error:
         raise Malformed([wrong("files", list(files), str(error))]) from None
     return await _begin(submit, world, True, said)
@@ -176,12 +176,12 @@ def _main(files: dict[str, bytes]) -> str:
 
 
 async def _new(request: Request, submit: Submit, limits: Limits) -> bytes:
-    wish = await checked_body(request, NewWorld, limits)
-    _not_taken(wish.name)
+    body = await checked_body(request, NewWorld, limits)
+    _not_taken(body.name)
     try:
-        world = empty_room(wish.name, wish.title or wish.name, wish.width_m, wish.depth_m)
+        world = empty_room(body.name, body.title or body.name, body.width_m, body.depth_m)
     except ValueError as error:
-        raise Malformed([wrong("width_m, depth_m", [wish.width_m, wish.depth_m], str(error))]) from None
+        raise Malformed([wrong("width_m, depth_m", [body.width_m, body.depth_m], str(error))]) from None
     return await _begin(submit, world, False, [])
 
 
@@ -229,25 +229,25 @@ def _add_saved_worlds(app: FastAPI, submit: Submit, limits: Limits) -> None:
 
 
 async def _save(request: Request, submit: Submit, limits: Limits) -> bytes:
-    wish = await checked_body(request, SaveWorld, limits)
-    _free(wish.name)
+    body = await checked_body(request, SaveWorld, limits)
+    _free(body.name)
     was, _ = await world_now(submit)
     yours = dict(own_worlds.names())
-    if wish.name in yours and not wish.replace:
-        await _is_ours(wish.name, was.name, submit)
-    if wish.rename and (was.name == wish.name or was.name not in yours):
+    if body.name in yours and not body.replace:
+        await _is_ours(body.name, was.name, submit)
+    if body.rename and (was.name == body.name or was.name not in yours):
         raise Malformed(
             [wrong("rename", True, f"{was.name!r} is no other world that you have saved; leave rename away")]
         )
-    title = wish.title or (was.title if wish.name == was.name else wish.name)
-    named = replace(was, name=wish.name, title=title)
+    title = body.title or (was.title if body.name == was.name else body.name)
+    named = replace(was, name=body.name, title=title)
     text = await asyncio.to_thread(world_to_json, named)
-    path = await _done(wish.name, lambda: own_worlds.save(wish.name, text))
+    path = await _done(body.name, lambda: own_worlds.save(body.name, text))
     await ask_engine(submit, WorldSaved(was, named))
-    if wish.rename:
+    if body.rename:
         await _done(was.name, lambda: own_worlds.delete(was.name))
         await ask_engine(submit, WorldDeleted(was.name))
-    return to_json({"name": wish.name, "file": str(path)})
+    return to_json({"name": body.name, "file": str(path)})
 
 
 def _free(name: str) -> None:

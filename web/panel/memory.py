@@ -46,7 +46,7 @@ def _counts(snapshot: Snapshot) -> dict[str, Any]:
 
 
 def _belief(snapshot: Snapshot) -> dict[str, Any]:
-    """What the robot thinks of its place: how far off it may be, and where else it may be."""
+    """The uncertainty of the pose estimate, and the hypotheses beside it."""
     belief, title = snapshot.belief, "How sure it is of its place"
     if belief is None:
         return table(title, [], "it has no experience map")

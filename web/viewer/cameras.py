@@ -94,7 +94,7 @@ class Cameras:
         return None if _near(camera, end.position, end.look_at) else camera
 
     def standing(self, client_id: int) -> Camera | None:
-        """Where a camera is, as its browser told last; None for one that is not there."""
+        """Where a camera is, as its browser last reported; None for one that is not there."""
         client = self._server.get_clients().get(client_id)
         return None if client is None else _standing(client.camera)
 

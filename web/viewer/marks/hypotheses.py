@@ -1,4 +1,4 @@
-"""Where the robot may be instead of where it believes itself to be."""
+"""Hypotheses: places where the robot may be instead of at the pose estimate."""
 
 from __future__ import annotations
 

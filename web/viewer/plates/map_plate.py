@@ -163,7 +163,7 @@ class MapPlate(Plate):
         self.labels.fix(self, [((x, y, z), *ROBOT_SIZE)], ROBOT)
 
     def set_others(self, others: tuple[Hypothesis, ...]) -> None:
-        """Shows where the robot may be instead of where it believes itself to be."""
+        """Shows the hypotheses beside the pose estimate."""
         places = self.fit.to_plate(np.array([(other.x, other.y) for other in others]).reshape(-1, 2))
         headings = [other.heading_rad + self.fit.turn_rad for other in others]
         self._others.show(places, headings, [other.share for other in others])
