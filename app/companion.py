@@ -1,5 +1,4 @@
-"""A second brain on the same senses, to be compared with the first: it is given what the first is given, and nobody does
-what it says. [ours]
+"""A second brain on the same sensor input, to be compared with the first: it only estimates, the pilot follows the first. [ours]
 
 test_companion.py: the first stays the same to the bit, and a companion with the same parameters is the first one again.
 """
@@ -21,9 +20,9 @@ from sim2d import Truth
 SECTIONS = tuple(RatSlamParams.__dataclass_fields__)  # of the parameters that a brain has
 
 
-@kind("parting/1")
+@kind("first_divergence/1")
 @dataclass(slots=True)
-class Parting:
+class FirstDivergence:
     """The first tick after which two brains differ, and how. view, experience: of the first and of the second; link: the ends
     of the one that only one of them has, and whether it is the first that has it. None: they do not differ in that."""
 
@@ -46,7 +45,7 @@ class Parting:
                 self.link = _link_of_one(tick, time_s, here.links.tolist(), there.links.tolist())
 
 
-@kind("companion/1")
+@kind("companion/2")
 class Companion:
     """One brain beside the first of a session. `counterpart[k]` is the experience in which this one was when the first one
     made its experience k, -1 where that is unknown: with it, a goal of the first is a place in this map, too."""
@@ -58,7 +57,7 @@ class Companion:
         """names: of the first brain and of this; values: the parameters that make the difference; config: all of them;
         since_s: the simulated time at which it began."""
         (self.first, self.name), self.values, self.config, self.brain = names, values, config, brain
-        self.evaluation, self.since_s, self.parting = evaluation, since_s, Parting()
+        self.evaluation, self.since_s, self.divergence = evaluation, since_s, FirstDivergence()
         self.counterpart: list[int] = []
         self.estimate: Estimate | None = None
         self.ties: Ties | None = None  # of a recording with a laser
@@ -66,15 +65,15 @@ class Companion:
     def follow(
         self, sensed: SensorInput, time_s: float, tick: int, truth: Truth | None, first: RatSlam, estimate: Estimate
     ) -> None:
-        """One step on what the first brain was given in this tick.
+        """One step on the sensor input of the first brain in this tick.
 
         first, estimate: the first brain, and what it has made of the tick; they are only compared with.
         """
-        own = self.estimate = sensed.tell(self.brain, self.ties)
+        own = self.estimate = sensed.step(self.brain, self.ties)
         if truth is not None:
             self.evaluation.record(time_s, truth, self.brain.experience_map, own.created, sensed.odometry)
         self._note_counterpart(estimate.experience)
-        self.parting.note(tick, time_s, first, estimate, self.brain, own)
+        self.divergence.note(tick, time_s, first, estimate, self.brain, own)
 
     def change(self, before: Config, now: Config) -> None:
         """Take the live parameters that differ between two configs of its own; the others wait for a reset, as ever."""
@@ -90,7 +89,7 @@ class Companion:
 
     def digest(self) -> str:
         """Of all that decides what it will do and how it is judged: equal for equal histories."""
-        parts = (self.values, self.config, self.brain, self.ties, self.evaluation, self.counterpart, self.parting)
+        parts = (self.values, self.config, self.brain, self.ties, self.evaluation, self.counterpart, self.divergence)
         return hashlib.sha256("".join(encode(part).digest() for part in parts).encode()).hexdigest()
 
     def _note_counterpart(self, experience: int) -> None:

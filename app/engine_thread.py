@@ -46,8 +46,8 @@ class EngineThread:
         past_room: for what looking back takes.
         """
         self.latest: Latest[m.Snapshot] = Latest()
-        self.stillborn: str | None = None  # why the engine could not begin; then the thread has ended ...
-        self.on_stillborn: Callable[[], object] = lambda: None  # ... and calls this
+        self.startup_error: str | None = None  # why the engine could not begin; then the thread has ended ...
+        self.on_startup_error: Callable[[], object] = lambda: None  # ... and calls this
         self.pace = Pace(speed)
         self._first: Callable[[Engine], object] = first or partial(
             Engine.begin, world=world, seed=seed, config=config, brain=brain
@@ -106,11 +106,11 @@ class EngineThread:
                 raise RuntimeError(self._engine.fault)
         except BaseException as error:
             traceback.print_exc()
-            self.stillborn = words_of(error)
+            self.startup_error = words_of(error)
             self._watchdog.stop()
-            self._inbox.close(f"the engine could not begin: {self.stillborn}")
-            self.on_stillborn()
-        return self.stillborn is None
+            self._inbox.close(f"the engine could not begin: {self.startup_error}")
+            self.on_startup_error()
+        return self.startup_error is None
 
     def _turn(self) -> None:
         self._take_requests()
@@ -240,7 +240,7 @@ class Inbox:
 
     @property
     def is_empty(self) -> bool:
-        """Whether nobody waits to be heard."""
+        """Whether no request waits."""
         return self._requests.empty()
 
     def has_news(self, *others: type) -> bool:

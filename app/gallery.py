@@ -26,7 +26,7 @@ from app.experiments.summary import CellSummary, summarise, words
 from app.protocol.experiment import EngineName, Experiment, Score, catalogue, first_levels
 from app.protocol.lesson import Formula, Lesson, all_lessons, own_lessons
 from app.protocol.lesson import catalogue as lesson_catalogue
-from app.protocol.performance import shown_s
+from app.protocol.lesson_round import shown_s
 from app.protocol.steps import Drive, Repeat, Step, Tag, place_of
 from sim2d import World
 from sim2d.importers import open_world

@@ -1,4 +1,4 @@
-"""What a session was told between two ticks, as data: with the seed and the world, it makes the run again, bit for bit."""
+"""The orders given to a session between two ticks, as data: with the seed and the world, it makes the run again, bit for bit."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def overtakes(later: Order, before: Order) -> bool:
 
 
 class Ordered(Protocol):
-    """Who has orders: tells `on_order` of each that was carried out."""
+    """What orders act on; `on_order` is called with each that was carried out."""
 
     on_order: Callable[[Order], object]
     under_orders: bool
@@ -49,9 +49,9 @@ class Ordered(Protocol):
 
 
 def order(method: Method) -> Method:
-    """A method of Session that is an order: once it is carried out, `session.on_order` is told. One that is refused, or that
+    """A method of Session that is an order: once it is carried out, `session.on_order` is called. One that is refused, or that
     changes nothing, is none."""
-    told_as = inspect.signature(method)
+    signature = inspect.signature(method)
 
     @functools.wraps(method)
     def carried_out(self: Ordered, *args: object, **kwargs: object) -> object:
@@ -64,7 +64,7 @@ def order(method: Method) -> Method:
             self.under_orders = False
         if answer is UNCHANGED:
             return None
-        _, *values = told_as.bind(self, *args, **kwargs).arguments.items()
+        _, *values = signature.bind(self, *args, **kwargs).arguments.items()
         self.on_order(Order(self.tick_count, method.__name__, {name: _as_json(value) for name, value in values}))
         return answer
 
@@ -123,7 +123,7 @@ class _Box(BaseModel):
     present: bool
 
 
-_AS_JSON: dict[Any, Any] = {World: str, Box: _Box, int: Annotated[int, Field(ge=0)]}  # as `order` tells them
+_AS_JSON: dict[Any, Any] = {World: str, Box: _Box, int: Annotated[int, Field(ge=0)]}  # as `order` writes them
 _NARROWER: dict[
     tuple[str, str], Any
 ] = {  # where a session itself allows more; an experiment may drive faster than a page

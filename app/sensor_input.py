@@ -1,4 +1,4 @@
-"""What a brain is given in one step, whatever senses it comes from."""
+"""The input of one step of a brain, from whatever source."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ratslam_core import Estimate, ExperienceMap, Odometry, RatSlam
 from ratslam_core.parts import Witness
 
-Lap = Callable[[str], None]  # is told each part of a tick that is done
+Lap = Callable[[str], None]  # called with each part of a tick that is done
 
 
 class Ties(Witness, Protocol):
@@ -25,7 +25,7 @@ class Ties(Witness, Protocol):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SensorInput:
-    """What a brain is given in one step; the fields are those of `RatSlam.step`. gap: the robot was away for a while."""
+    """The fields are those of `RatSlam.step`. gap: the robot was away for a while."""
 
     image: NDArray[np.uint8] | None
     odometry: Odometry
@@ -35,7 +35,7 @@ class SensorInput:
     gap: bool = False
     scan_m: NDArray[np.float64] | None = None  # of a laser, in the order of its beams
 
-    def tell(self, brain: RatSlam, ties: Ties | None = None, watch: Lap | None = None) -> Estimate:
+    def step(self, brain: RatSlam, ties: Ties | None = None, watch: Lap | None = None) -> Estimate:
         """One step of a brain; ties: what ties its experiences by a laser's scans. The scene number is made from the true
         pose, so a brain gets it only if its front end is "scene numbers", as in the papers' own simulator."""
         if self.gap:

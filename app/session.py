@@ -121,8 +121,8 @@ class Session:
 
     def _think(self, watch: Lap) -> Estimate:
         """One step of the brain on what is sensed in this tick, compared with the truth where that is known."""
-        self.odometry = self.sensed.odometry  # what the brain was told in its last step
-        estimate = self.sensed.tell(self.brain, self.ties, watch)
+        self.odometry = self.sensed.odometry  # as given to the brain in its last step
+        estimate = self.sensed.step(self.brain, self.ties, watch)
         truth = self.source.truth
         if truth is not None:
             map_ = self.brain.experience_map
@@ -226,7 +226,7 @@ class Session:
 
     @order
     def tag(self, name: str) -> int:
-        """Name the place where the robot believes itself to be, as "the kitchen", to send it there later. A name that is
+        """Name the place of the pose estimate, as "the kitchen", to send the robot there later. A name that is
         given again moves. Returns the active experience. IROS 2005 IV."""
         name = one_line(name.strip())
         if not name:
@@ -263,7 +263,7 @@ class Session:
 
     @order
     def kidnap(self, x: float | None = None, y: float | None = None, heading_rad: float | None = None) -> None:
-        """Put the robot at (x, y), metres in the office's frame, untold. Without a place: a random free one."""
+        """Put the robot at (x, y), metres in the office's frame, unknown to the brain. Without a place: a random free one."""
         if x is None and y is None:
             x, y, by_chance = self.simulator.random_free_pose()
             heading_rad = by_chance if heading_rad is None else heading_rad

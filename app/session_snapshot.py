@@ -18,7 +18,7 @@ from typing import IO, cast, get_args
 
 import numpy as np
 
-from app.companion import SECTIONS, Companion, Parting
+from app.companion import SECTIONS, Companion, FirstDivergence
 from app.config import Config
 from app.evaluation import Evaluation
 from app.evaluation.evaluation import Kidnapping, Stretch
@@ -139,7 +139,7 @@ def companion(companion: Companion, experiences: int) -> None:
     true(companion.ties is None, "a second brain in an office has no laser's scans to tie")
     true(isinstance(companion.estimate, Estimate), "what the second brain believes must be an estimate")
     number("since when there is a second brain", companion.since_s, 0.0, LONGEST_S)
-    true(isinstance(companion.parting, Parting), "how two brains differ must be told by a parting")
+    true(isinstance(companion.divergence, FirstDivergence), "how two brains differ must be a first divergence")
     true(isinstance(companion.counterpart, list), "the counterparts must be a list")
     true(len(companion.counterpart) <= experiences, f"there are {experiences} experiences to have a counterpart")
     for own_one in companion.counterpart:

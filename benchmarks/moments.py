@@ -21,7 +21,7 @@ from app.views.history import History
 from benchmarks.machine import verdict
 from sim2d import load_world
 
-HOUR_TICKS, TELL_AFTER = 36_000, 18_000
+HOUR_TICKS, REPORT_AFTER = 36_000, 18_000
 LONG_HOURS, BAR_S, LONG_BAR_S = 1.0, 0.3, 1.0  # longer runs than this have another bar
 
 
@@ -30,7 +30,7 @@ def make_run(world: str, hours: float, room: PastRoom) -> TimeMachine:
     session = Session(load_world(world), 1)
     history = History(session)
     machine = TimeMachine(session, history, room)
-    session.on_order = machine.told
+    session.on_order = machine.note_order
     began_s, cpu_s, keeping_s = time.monotonic(), time.process_time(), 0.0
     for tick in range(1, round(HOUR_TICKS * hours) + 1):
         session.tick()
@@ -38,7 +38,7 @@ def make_run(world: str, hours: float, room: PastRoom) -> TimeMachine:
         before = time.thread_time()
         machine.ticked()
         keeping_s += time.thread_time() - before
-        if tick % TELL_AFTER == 0:
+        if tick % REPORT_AFTER == 0:
             ticks = np.diff([frame.tick for frame in machine.live.keyframes])
             print(
                 f"{tick / HOUR_TICKS:4.1f} h: {time.monotonic() - began_s:.0f} s on the clock, "

@@ -102,19 +102,19 @@ def cut_off_run() -> KeptRun | None:
     return None
 
 
-def going_on(kept: KeptRun, tell: Callable[[float], object]) -> m.GoOn:
-    """The run in the session where it was left. tell: is given the share that is done, and may raise to give it up."""
+def going_on(kept: KeptRun, progress: Callable[[float], object]) -> m.GoOn:
+    """The run in the session where it was left. progress: is called with the share that is done, and may raise to give it up."""
     from app.run_record.resume import resumed
     from web import messages as m
 
     done_s = 0.0
 
-    def told(seconds: float) -> None:
+    def passed(seconds: float) -> None:
         nonlocal done_s
         done_s += seconds
-        tell(min(1.0, done_s / max(kept.length_s, 1e-9)))
+        progress(min(1.0, done_s / max(kept.length_s, 1e-9)))
 
-    return m.GoOn(kept, resumed(kept, told))
+    return m.GoOn(kept, resumed(kept, passed))
 
 
 def resumed_run(args: argparse.Namespace) -> First:
@@ -130,7 +130,7 @@ def resumed_run(args: argparse.Namespace) -> First:
         raise ValueError(f"the run {kept.name} {busy_words(kept.folder)}")
     compile_first()
     session = with_progress(
-        kept.length_s, lambda tell: resumed(kept, lambda s: tell(s, "running again what led there"))
+        kept.length_s, lambda progress: resumed(kept, lambda s: progress(s, "running again what led there"))
     )
     print(f"The run {kept.name} goes on at tick {session.tick_count}", flush=True)
     own_worlds.tidy()
@@ -168,12 +168,12 @@ def _situation_in(name: str) -> Situation:
 
 def played_recording(args: argparse.Namespace) -> First:
     """A recording from its beginning."""
-    from app.recordings.apart import ReadApart
     from app.recordings.playing import Player
+    from app.recordings.reader_process import ReaderProcess
 
     _refuse(args, _NOT_WITH_RECORDING, "--recording, which is no simulated world")
     seed = checked_seed(1 if args.seed is None else args.seed)
-    player = Player(ReadApart(args.recording), seed, path=args.recording)
+    player = Player(ReaderProcess(args.recording), seed, path=args.recording)
     player.config = config_of(args, player.config)
     own_worlds.tidy()
     return First(open_world(DEFAULT_WORLD), seed, player.config, begin=lambda engine: engine.begin_recording(player))

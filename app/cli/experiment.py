@@ -114,7 +114,7 @@ def _list(args: argparse.Namespace) -> int:
         measured = measured_of.get(experiment.name, {})
         duration = duration_of(experiment, experiment.how_many(args.trials, args.quick), measured, args.quick)
         total_s += duration.seconds / workers
-        _tell(experiment, f"{duration.trials} trials, {duration.words(workers)}")
+        _print_plan(experiment, f"{duration.trials} trials, {duration.words(workers)}")
     print(f"\nAll together: {time_words(total_s)} with {workers} {'worker' if workers == 1 else 'workers'}.")
     print(
         "`ratslam experiment NAME` runs one, `ratslam experiment all` every one; what was run before is not run again."
@@ -137,7 +137,7 @@ def _measured(path: Path | None, quick: bool) -> dict[str, dict[str, float]]:
     return {}
 
 
-def _tell(experiment: Experiment, duration: str) -> None:
+def _print_plan(experiment: Experiment, duration: str) -> None:
     print(f"{experiment.name}: {experiment.title} ({experiment.paper})")
     print(textwrap.fill(experiment.asks, WIDTH, initial_indent="    ", subsequent_indent="    "))
     print(f"    {duration}")

@@ -96,7 +96,7 @@ def _run(plan: _Plan, args: argparse.Namespace, store: Store, workers: Workers) 
         with LiveTable(
             plan.experiment, plan.trials, store.stored(plan.trials), plan.duration.seconds / workers.count
         ) as live:
-            run_trials(plan.trials, store, client, expected_s=expected_s, tell=live.add)
+            run_trials(plan.trials, store, client, expected_s=expected_s, on_ended=live.add)
     except KeyboardInterrupt:
         done = len(plan.trials) - len(pending(plan.trials, store))
         print(

@@ -187,9 +187,9 @@ def _deliver(args: argparse.Namespace) -> int:
         with_progress(args.minutes * 60 + args.deliveries * DELIVERY_S, work)
     except KeyboardInterrupt:
         if runs:
-            _tell(runs[0].report(), args)
+            _write(runs[0].report(), args)
         raise
-    _tell(runs[0].report(), args)
+    _write(runs[0].report(), args)
     return 0
 
 
@@ -204,7 +204,7 @@ def _check(args: argparse.Namespace) -> None:
             raise ValueError(f"{name} must be from {low:g} to {high:g}, got {value:g}; {advice}")
 
 
-def _tell(report: dict[str, Any], args: argparse.Namespace) -> None:
+def _write(report: dict[str, Any], args: argparse.Namespace) -> None:
     done, failed = report["deliveries"], len(report["failures"])
     stopped = f"stopped early, after {done} of {args.deliveries} deliveries: " if report["partial"] else ""
     words = (

@@ -66,7 +66,7 @@ def _check(path: Path) -> int:
 def _run(name: str, seed: int | None) -> int:
     from app.cli.options import compile_first
     from app.protocol.lesson import find_lesson, read_lesson
-    from app.protocol.performance import report_of
+    from app.protocol.lesson_round import report_of
 
     lesson = read_lesson(Path(name)) if name.endswith(".toml") else find_lesson(name)
     compile_first()
@@ -78,7 +78,7 @@ def _run(name: str, seed: int | None) -> int:
 def _time() -> int:
     from app.cli.options import compile_first
     from app.protocol.lesson import all_lessons
-    from app.protocol.performance import finish, set_scene
+    from app.protocol.lesson_round import set_scene, show_to_end
 
     compile_first()
     print(f"{'lesson':18}  to set the scene of each round    to show them, as fast as possible")
@@ -88,9 +88,9 @@ def _time() -> int:
         shown_s = 0.0
         for number in range(lesson.round_count):
             began = time.perf_counter()
-            performance = set_scene(lesson, number)
+            round_ = set_scene(lesson, number)
             scenes_s.append(time.perf_counter() - began)
-            finish(performance)
+            show_to_end(round_)
             shown_s += time.perf_counter() - began - scenes_s[-1]
         scenes = ", ".join(f"{s:.2f}" for s in scenes_s)
         total_s += sum(scenes_s) + shown_s

@@ -62,7 +62,7 @@ def session_of(args: argparse.Namespace) -> tuple[World, Config, RatSlam | None]
     config = config_of(args, Config() if brain is None else Config().with_engine(brain.params))
     for words in config.warnings:
         print(f"ratslam: note: {words}", file=sys.stderr)
-    world = open_world(args.world, args.scale, robot_radius_m=config.robot.robot_radius_m, tell=tell_beside)
+    world = open_world(args.world, args.scale, robot_radius_m=config.robot.robot_radius_m, tell=print_note)
     return world, config, brain
 
 
@@ -92,7 +92,7 @@ def checked_seed(seed: int) -> int:
     return seed
 
 
-def tell_beside(sentence: str) -> None:
+def print_note(sentence: str) -> None:
     """A word about a plan, beside what is printed."""
     print(f"ratslam: {sentence}", file=sys.stderr)
 

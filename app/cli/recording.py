@@ -46,14 +46,14 @@ def recording_of(path: Path, args: argparse.Namespace) -> Recording:
     """The recording, opened with these options. ValueError."""
     if not 0 <= args.seed < 2**32:
         raise ValueError(f"--seed must be from 0 to {2**32 - 1}, got {args.seed}")
-    from app.recordings.apart import ReadApart
     from app.recordings.formats.ros_topics import Choice
     from app.recordings.motion import parse_errors
     from app.recordings.opening import Opening
+    from app.recordings.reader_process import ReaderProcess
 
     choice = Choice(**{name: getattr(args, f"{name}_topic") for name in TOPICS})
     made = None if args.odometry_from_truth is None else parse_errors(args.odometry_from_truth)
-    return ReadApart(path, Opening(choice, args.rate, made, args.seed))
+    return ReaderProcess(path, Opening(choice, args.rate, made, args.seed))
 
 
 def require_no_recording_options(args: argparse.Namespace) -> None:

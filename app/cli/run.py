@@ -191,7 +191,7 @@ def _serve(serving: Serving, first: First, compiling: Compiling) -> int:
     from app.run_record.link import PageSituations
     from app.run_record.writer import RunKeeper
     from app.session_snapshot import load_its_brain
-    from app.startup.compiling import Waking
+    from app.startup.compiling import EngineStarter
     from web import messages as m
     from web.http.brains import Offered
     from web.http.server import CannotListen, Dashboard
@@ -226,31 +226,31 @@ def _serve(serving: Serving, first: First, compiling: Compiling) -> int:
     except CannotListen as error:
         raise ValueError(str(error)) from None
 
-    waking = Waking(engine, compiling)
-    dashboard.on_ready, engine.on_stillborn = partial(_tell, serving, dashboard), dashboard.stop
-    waking.start()
+    starter = EngineStarter(engine, compiling)
+    dashboard.on_ready, engine.on_startup_error = partial(_announce, serving, dashboard), dashboard.stop
+    starter.start()
     if runs is not None:
         runs.start()
     try:
         dashboard.run()
     finally:
-        waking.stop(ENGINE_PATIENCE_S)
+        starter.stop(ENGINE_PATIENCE_S)
         if runs is not None:
             runs.stop()
-    if engine.stillborn is not None:
-        raise ValueError(f"the engine could not begin: {engine.stillborn}")
+    if engine.startup_error is not None:
+        raise ValueError(f"the engine could not begin: {engine.startup_error}")
     return 0
 
 
 def _opened(path: Path, called_off: threading.Event) -> object:
     """What plays the recording in a file. ValueError says what is wrong with it."""
-    from app.recordings.apart import ReadApart
     from app.recordings.playing import Player
+    from app.recordings.reader_process import ReaderProcess
 
-    return Player(ReadApart(path, called_off=called_off), 1, path=path)
+    return Player(ReaderProcess(path, called_off=called_off), 1, path=path)
 
 
-def _tell(serving: Serving, dashboard: Dashboard, url: str) -> None:
+def _announce(serving: Serving, dashboard: Dashboard, url: str) -> None:
     if dashboard.classroom is not None:
         print(class_words(dashboard.classroom), flush=True)
     print(f"RatSLAM is alive at {url}  (Ctrl+C ends it)", flush=True)

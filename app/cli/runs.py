@@ -99,7 +99,7 @@ def _replay(args: argparse.Namespace) -> int:
     run = open_run(args.run)
     compile_first()
     try:
-        with_progress(run.length_s, lambda tell: replayed(run, lambda s: tell(s, "running it again")))
+        with_progress(run.length_s, lambda progress: replayed(run, lambda s: progress(s, "running it again")))
     except ReplayError as error:
         print(error)
         return 1

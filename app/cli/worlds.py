@@ -6,7 +6,7 @@ import argparse
 import sys
 from pathlib import Path
 
-from app.cli.options import Verbs, tell_beside
+from app.cli.options import Verbs, print_note
 from disk import write_whole
 from disk.words import shown
 
@@ -64,7 +64,7 @@ def _complaints(path: Path, scale_m: float | None) -> list[str]:
             text = path.read_text("utf-8")
             if not isinstance(parse_json(text, path.name), list):
                 return complaints(text, path.name)
-        import_file(path, scale_m, tell=tell_beside)
+        import_file(path, scale_m, tell=print_note)
     except (OSError, UnicodeDecodeError) as error:
         return [f"{path}: cannot be read: {error}"]
     except WorldError as error:
@@ -78,7 +78,7 @@ def _import(args: argparse.Namespace) -> int:
     from sim2d import world_to_json
     from sim2d.importers import import_file
 
-    world = import_file(args.file, args.scale, args.seed, tell=tell_beside)
+    world = import_file(args.file, args.scale, args.seed, tell=print_note)
     write_whole(args.output, world_to_json(world))
     print(f"{args.output}: {world.title}, {len(world.walls)} walls, {len(world.starts)} starts")
     return 0

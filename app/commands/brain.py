@@ -102,7 +102,7 @@ def figures_of(engine: Engine) -> str:
 
 
 def _wanted(command: m.CompareBrains, config: Config) -> tuple[str, str, Mapping[str, Value]]:
-    """What the two are called, and in what they differ. ValueError: neither or both are told."""
+    """What the two are called, and in what they differ. ValueError: neither or both are given."""
     if (command.pair is None) == (command.values is None):
         raise ValueError("compare_brains takes either a pair or values")
     if command.pair is not None:

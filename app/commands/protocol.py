@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from app.commands.outcome import Outcome
 from app.engine.engine import Engine
-from app.engine.lesson_run import LessonRun, Teaching
+from app.engine.lesson_supervisor import LessonSupervisor, Teaching
 from app.engine.waiting import RunUntil
 from app.engine.watched_trial import CHANGED
 from app.protocol.conditions import read_until
@@ -94,7 +94,7 @@ def run_until(engine: Engine, command: m.RunUntil) -> Outcome:
     return None
 
 
-def _open(engine: Engine) -> LessonRun:
+def _open(engine: Engine) -> LessonSupervisor:
     """The lesson, while predictions are taken. ValueError otherwise."""
     lesson = engine.run.lesson
     if lesson is None:

@@ -112,7 +112,7 @@ def _hindrance(engine: Engine, command: object) -> str:
     if isinstance(command, CommandModel):
         if engine.time.past is not None and not command.in_the_past:
             return PAST
-        if engine.run.ahead is not None and engine.run.ahead.state == "playing" and not command.while_playing:
+        if engine.run.replay is not None and engine.run.replay.state == "playing" and not command.while_playing:
             return PLAYING
     return ""
 
@@ -142,8 +142,8 @@ def _ordered(engine: Engine, command: CommandModel) -> None:
         # What somebody sets is wanted in the next run, too; what the trial or lesson had set goes with it.
         one = isinstance(command, m.SetParameter)
         engine.run.config_before = before.with_values({command.name: command.value} if one else values_of(command.name))
-    for guide in engine.run.guides:
+    for supervisor in engine.run.supervisors:
         if command.ends:
-            guide.ordered(command.ends)
+            supervisor.ordered(command.ends)
         elif command.alters:
-            guide.alter()
+            supervisor.alter()

@@ -1,5 +1,5 @@
-"""What commands act on: the run that is open with its branches, whether it plays, and who waits for its ticks. It knows
-neither queue nor page."""
+"""What commands act on: the run that is open with its branches, whether it plays, and who waits for its ticks. It depends
+on neither queue nor page."""
 
 from __future__ import annotations
 
@@ -10,17 +10,17 @@ import traceback
 from collections.abc import Callable
 
 from app.config import Config
-from app.engine.lesson_run import LessonRun, Teaching
+from app.engine.lesson_supervisor import LessonSupervisor, Teaching
 from app.engine.library import Library
 from app.engine.pace import Pace
-from app.engine.played_ahead import PlayedAhead
 from app.engine.run import Run
+from app.engine.situation_replay import SituationReplay
 from app.engine.time_travel import TimeTravel
 from app.engine.waiting import Steps
 from app.engine.watchdog import Watchdog, words_of
 from app.engine.watched_trial import WatchedTrial
 from app.engine.work import Slices, Work
-from app.protocol.performance import session_of
+from app.protocol.lesson_round import session_of
 from app.protocol.trial import Trial
 from app.recordings.playing import Player
 from app.run_record.bookmarks import read_bookmarks
@@ -133,7 +133,7 @@ class Engine:
                 self._leave_past(error)
             return True
         self._pause_after_trial(playing)
-        pauses = live and self.run.takes_pause()
+        pauses = live and self.run.take_pause_request()
         if pauses:
             self.running = False
             self.break_off()
@@ -172,7 +172,7 @@ class Engine:
         return True
 
     def _pause_after_trial(self, played: bool) -> None:
-        """A trial that has just come to its end is looked at in peace; whoever presses play goes on from there."""
+        """Pause once when a trial has just ended; the user may go on from there."""
         trial = self.run.trial
         if played and trial is not None and trial.state == "over":
             self.running = False
@@ -283,7 +283,7 @@ class Engine:
         """
         session = session_of(teaching.lesson, teaching.number, teaching.seed)
         run = self._make_run(session, beginning_of(session, trial=f"the lesson {teaching.lesson.title}"))
-        run.lesson = LessonRun(teaching, session, run.history, at_once=at_once)
+        run.lesson = LessonSupervisor(teaching, session, run.history, at_once=at_once)
         run.config_before = teaching.config_before
         if session.world.name not in dict(self.library.titles):
             self.library.add(session.world)
@@ -330,13 +330,13 @@ class Engine:
             self.library.add(session.world)
         self._change_to(run, session.world)
         self.running = False
-        run.ahead = PlayedAhead(situation, session, run.event_log, before)
-        run.ahead.advance()
+        run.replay = SituationReplay(situation, session, run.event_log, before)
+        run.replay.after_tick()
         return run
 
     def leave_situation(self) -> None:
         """Stop playing what was opened; the run before goes on from where it was, paused."""
-        before = self.run.ahead and self.run.ahead.before
+        before = self.run.replay and self.run.replay.before
         if before is None:
             self.run.stop_running_ahead()
             return
@@ -358,7 +358,9 @@ class Engine:
             run.feed = self._feed(run.session, Fork(before, run.session.tick_count))
         run.bookmarks = marks.until(run.session.tick_count)
         run.keep_bookmarks()
-        run.lesson = None if lesson is None else LessonRun(lesson.teaching, run.session, run.history, branch=True)
+        run.lesson = (
+            None if lesson is None else LessonSupervisor(lesson.teaching, run.session, run.history, branch=True)
+        )
         return self._go_on_paused(run)
 
     def change_branch(self, number: int) -> Run:
@@ -416,7 +418,7 @@ class Engine:
             snapshots.settle()
         snapshots.office = self.editor.edition if worlds else None
         snapshots.trial = None if run.trial is None else run.trial.view()
-        snapshots.situation = None if run.ahead is None else run.ahead.view()
+        snapshots.situation = None if run.replay is None else run.replay.view()
         snapshots.lesson = None if run.lesson is None else run.lesson.view()
         snapshots.until = None if run.until is None else run.until.view()
         snapshots.time = self.time.view(self.slices.work)

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from app.config import Config
-from app.engine.guide import Guide
-from app.engine.lesson_run import LessonRun
-from app.engine.played_ahead import PlayedAhead
+from app.engine.lesson_supervisor import LessonSupervisor
+from app.engine.situation_replay import SituationReplay
+from app.engine.supervisor import Supervisor
 from app.engine.waiting import RunUntil
 from app.engine.watchdog import require_finite
 from app.engine.watched_trial import WatchedTrial
@@ -32,11 +32,11 @@ class Run:
         self.number, self.session = number, session
         self.machine: TimeMachine | None = None  # keeps, from some tick on, what is needed to go back to any other
         self.trial: WatchedTrial | None = None
-        self.ahead: PlayedAhead | None = None  # a situation that was opened
+        self.replay: SituationReplay | None = None  # a situation that was opened
         self.beginning: Beginning | KeptRun | None = (
             None  # None: of a recording, and of a branch, which has its parent's
         )
-        self.lesson: LessonRun | None = None
+        self.lesson: LessonSupervisor | None = None
         self.until: RunUntil | None = None  # what `run_until` waits for
         self.config_before: Config | None = None  # a trial's settings go with it
         self.feed: RunFeed | None = None  # of who keeps the run
@@ -46,13 +46,13 @@ class Run:
         if history is None:
             for words in session.warnings:
                 self.event_log.note("warning", words)
-        session.on_order = self._told
+        session.on_order = self._note_order
 
-    def _told(self, order: Order) -> None:
+    def _note_order(self, order: Order) -> None:
         if self.feed is not None:
             self.feed.order(order)
         if self.machine is not None:
-            self.machine.told(order)
+            self.machine.note_order(order)
 
     def keep_bookmarks(self) -> None:
         if self.feed is not None:
@@ -71,40 +71,42 @@ class Run:
         self.snapshots.walk = None
         if self.until is not None and not self.until.runs_ahead:
             self.until = None
-        for guide in self.guides:
-            guide.before_tick()
+        for supervisor in self.supervisors:
+            supervisor.before_tick()
         self.session.tick(recorder)
         require_finite(self.session)
         if self.feed is not None:
             self.feed.tick(self.session)
         self.history.watch()
-        if self.machine is not None:  # before the guides' orders, which come after this tick
+        if self.machine is not None:  # before the supervisors' orders, which come after this tick
             self.machine.ticked()
-        for guide in self.guides:
-            guide.advance()
+        for supervisor in self.supervisors:
+            supervisor.after_tick()
 
     @property
     def runs_ahead(self) -> bool:
-        """Whether a guide wants it to run as fast as possible."""
-        return any(guide.runs_ahead for guide in self.guides)
+        """Whether a supervisor asks for the highest speed."""
+        return any(supervisor.runs_ahead for supervisor in self.supervisors)
 
     def stop_running_ahead(self) -> None:
-        for guide in self.guides:
-            guide.stop_running_ahead()
+        for supervisor in self.supervisors:
+            supervisor.stop_running_ahead()
 
-    def takes_pause(self) -> bool:
-        """Whether a guide has come to something that is to be looked at in peace. Asked once, it is over."""
-        pausing = [guide for guide in self.guides if guide.pauses]
-        for guide in pausing:
-            guide.pauses = False
+    def take_pause_request(self) -> bool:
+        """Whether a supervisor asks for a pause. One-shot: asking clears it."""
+        pausing = [supervisor for supervisor in self.supervisors if supervisor.pause_requested]
+        for supervisor in pausing:
+            supervisor.pause_requested = False
         if self.lesson is not None and self.lesson.inspects is not None:
             self.snapshots.inspected, self.lesson.inspects = self.lesson.inspects, None
             self.snapshots.refresh()  # that of this tick may have been built already
         return bool(pausing)
 
     @property
-    def guides(self) -> list[Guide]:
-        return [guide for guide in (self.trial, self.lesson, self.until, self.ahead) if guide is not None]
+    def supervisors(self) -> list[Supervisor]:
+        return [
+            supervisor for supervisor in (self.trial, self.lesson, self.until, self.replay) if supervisor is not None
+        ]
 
     def require_showable(self) -> None:
         """Build a snapshot, to raise what would be raised later."""

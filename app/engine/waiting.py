@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections import deque
 
-from app.engine.guide import Guide
+from app.engine.supervisor import Supervisor
 from app.protocol.conditions import Until, Waiting
 from app.session import Session
 from app.views.history import History
@@ -39,7 +39,7 @@ class Steps:
         return ended
 
 
-class RunUntil(Guide):
+class RunUntil(Supervisor):
     """[ours] A run is the same, whether it is waited for something or not. test_run_until.py."""
 
     def __init__(self, until: Until, within_s: float, session: Session, history: History) -> None:
@@ -52,7 +52,7 @@ class RunUntil(Guide):
     def runs_ahead(self) -> bool:
         return self._state == "running"
 
-    def advance(self) -> None:
+    def after_tick(self) -> None:
         if not self.runs_ahead:
             return
         passed_s = self._session.time_s - self._began_s
@@ -70,5 +70,5 @@ class RunUntil(Guide):
         return UntilView(self._waiting.until.what, self._words, self._state, min(1.0, share))
 
     def _end(self, state: UntilState, words: str) -> None:
-        self._state, self.pauses = state, True
+        self._state, self.pause_requested = state, True
         self._history.log.note("lesson" if state == "met" else "warning", words)

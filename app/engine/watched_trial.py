@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from app.engine.guide import Guide
+from app.engine.supervisor import Supervisor
 from app.protocol.course import Course
 from app.protocol.trial import Trial
 from app.views.events import EventLog
@@ -10,11 +10,11 @@ from web.messages import TrialState, TrialView
 
 BEFORE_S = 10.0  # a trial that is run ahead to a moment stops so long before it
 CHANGED = "the program has changed since this trial was run: what it does today may differ from its scores"
-_UNTOLD = ("recovered", "end")  # the log tells of the first anyway, and of the second together with the outcome
+_NOT_LOGGED = ("recovered", "end")  # the log has the first anyway, and the second together with the outcome
 
 
-class WatchedTrial(Guide):
-    """Call `advance` after each tick. The run is the same, bit for bit, as that of the trial by itself."""
+class WatchedTrial(Supervisor):
+    """Call `after_tick` after each tick. The run is the same, bit for bit, as that of the trial by itself."""
 
     def __init__(self, trial: Trial, title: str, course: Course, log: EventLog, moment_s: float | None = None) -> None:
         """title: of the experiment. moment_s: simulated time of the moment that is to be seen."""
@@ -28,14 +28,14 @@ class WatchedTrial(Guide):
         self._ticks = course.ticks()
         where = ", ".join([trial.engine, *trial.levels, f"seed {trial.seed}"])
         log.note("trial", f"{trial.experiment} begins: {where}")
-        self.advance()  # what it does first: its tags, its first order
+        self.after_tick()  # what it does first: its tags, its first order
 
     @property
     def runs_ahead(self) -> bool:
         """Whether it still has to be run, as fast as possible, to shortly before its moment."""
         return self._ahead_s is not None
 
-    def advance(self) -> None:
+    def after_tick(self) -> None:
         """Give the robot its orders for the next tick, and note what has happened."""
         if self.state != "running":
             return
@@ -78,8 +78,8 @@ class WatchedTrial(Guide):
         )  # fmt: skip
 
     def _note_moments(self) -> None:
-        for moment in self.course.untold():
-            if moment.kind not in _UNTOLD:
+        for moment in self.course.new_moments():
+            if moment.kind not in _NOT_LOGGED:
                 self._log.note("trial" if moment.kind == "step" else moment.kind, moment.words)
 
 

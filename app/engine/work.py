@@ -8,7 +8,7 @@ from collections.abc import Callable, Generator
 
 from web.messages import Accepted, Refused, Request
 
-SLICE_S = 0.02  # a newer wish is heard after it
+SLICE_S = 0.02  # a newer request is read after it
 
 
 class Work:
@@ -45,7 +45,7 @@ class Slices:
     def __init__(
         self, answer: Callable[[Request, Accepted | Refused], None], fail: Callable[[BaseException], None]
     ) -> None:
-        """answer: is called for whoever waits for the work. fail: is told what went wrong in it."""
+        """answer: is called for whoever waits for the work. fail: is called with what went wrong in it."""
         self.first_s = math.inf  # of the first slice: with nobody to come in between, all is done at once
         self.work: Work | None = None
         self._answer, self._fail = answer, fail

@@ -18,7 +18,7 @@ from sim2d import Truth
 
 REVISIT_AGE_S = 20.0  # an active experience that was made longer ago than this counts as revisited
 NEAR_M, NEAR_RAD = 1.0, 0.6
-CONSISTENT_M = 0.5  # a revisit is consistent if the robot is truly this near to where it believes itself to be
+CONSISTENT_M = 0.5  # a revisit is consistent if ground truth and pose estimate are this near to each other
 CONSISTENT_WITHIN_S = 300.0  # of a kidnap; later nobody asks whether the estimate agrees with those of before
 MOST_TICKS = 20_000  # before a kidnap, with whose estimates one after it is compared: the work is bounded
 EVERY = 5  # rows; at 10 Hz and 0.3 m/s, one in 0.15 m
@@ -97,7 +97,7 @@ class Evaluation:
         return self._rows[: self._count, :2]
 
     def belief_off(self, truth: Truth, experiences: ExperienceMap) -> tuple[float, float]:
-        """How far (m, rad) the robot is from where it believes itself to be beside the active experience.
+        """The error (m, rad) of the pose estimate relative to the active experience.
 
         The experience counts as being where it was truly made, so a map that is bent or moves later changes nothing.
         NaN for an experience that the brain brought with it. Without a map (ACRA 2004) the packet is compared with
@@ -197,7 +197,7 @@ class Evaluation:
             kidnap.agrees(time_s, _near(off_earlier_passes(*passes, _pose(truth), experiences.robot)))
 
     def _right(self, kidnap: Kidnapping, truth: Truth, experiences: ExperienceMap) -> bool | None:
-        """Whether place and heading are right where the robot believes itself to be; None if it is lost, or at a new
+        """Whether place and heading of the pose estimate are right; None if the robot is lost, or at a new
         place. Place alone is not enough: a robot turned on the spot has not moved.
         """
         if isinstance(experiences, CellsOnly):
@@ -297,11 +297,11 @@ class Stretch:
 @kind("kidnapping/2")
 @dataclass(slots=True)
 class Kidnapping:
-    """One kidnap, judged for all engines alike by what the robot believes, from which it acts.
+    """One kidnap, judged for all engines alike by the pose estimate, from which the robot acts.
 
-    It is right again (`after_s`, `after_m`) when for half a second it believes itself to be at a known place, and truly is
-    within 1 m and 0.6 rad of there. Until then it may have believed itself to be where it was not for as long as `wrong`
-    says. `joined_s`: its map was one again, which only an engine can tell that notices a kidnap. `consistent_s`: what
+    It is right again (`after_s`, `after_m`) when for half a second the estimate is at a known place, and the ground truth
+    within 1 m and 0.6 rad of there. `wrong`: for how long the estimate was at a wrong place until then. `joined_s`: its map
+    was one again, which only an engine can tell that notices a kidnap. `consistent_s`: what
     ACRA 2004 would call relocalised, the estimate agrees with those of earlier passes through here.
     """
 
@@ -328,7 +328,7 @@ class Kidnapping:
         self._way_m += way_m
 
     def believes(self, time_s: float, right: bool | None) -> None:
-        """Whether the known place is right where the robot believes itself to be; None: it is lost, or at a new place."""
+        """Whether the known place of the pose estimate is right; None: the robot is lost, or at a new place."""
         if self.after_s is None:
             self.wrong.note(time_s, self._way_m, right is False)
             if self._right.note(time_s, self._way_m, right is True):

@@ -27,7 +27,7 @@ _HREF = f"{{{_XLINK}}}href"
 _ADDRESS = re.compile(r"url\(#([^)]+)\)")
 _COLOUR = re.compile("|".join(THEMED))
 _LARGER = 1.2  # than on paper, since a screen is farther away
-_TOLD = re.compile(r"(trial|cell)-([0-9a-f]+)$")
+_LABELLED = re.compile(r"(trial|cell)-([0-9a-f]+)$")
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,7 +64,7 @@ def page_of(material: Material, drawn: list[Drawn], command: str, failed: list[S
         scores=[(score, int(_is_compared(experiment, score))) for score in experiment.scores],
         trials=[_row_of(material, trial) for trial in material.trials],
         failed=failed,
-        told=_json({"trials": _told(material), "cells": _cells(material)}),
+        data=_json({"trials": _trials(material), "cells": _cells(material)}),
         command=command,
         seeds=sorted({trial.seed for trial in material.trials}),
         version=code_version(),
@@ -134,7 +134,7 @@ def _row_of(material: Material, trial: StoredTrial) -> dict[str, Any]:
     }
 
 
-def _told(material: Material) -> dict[str, Any]:
+def _trials(material: Material) -> dict[str, Any]:
     """What the box says of each trial."""
     return {
         trial.id: {
@@ -222,9 +222,9 @@ def _own(element: ET.Element, prefix: str, titles: dict[str, str], taken: set[st
             own += "-again"
         taken.add(own)
         element.set("id", own)
-        told = _TOLD.match(name)
-        if told and name in titles:
-            _tell(element, told[1], told[2], titles[name])
+        labelled = _LABELLED.match(name)
+        if labelled and name in titles:
+            _label(element, labelled[1], labelled[2], titles[name])
     for key, value in element.attrib.items():
         if key == _HREF and value.startswith("#"):
             element.set(key, f"#{prefix}-{value[1:]}")
@@ -233,7 +233,7 @@ def _own(element: ET.Element, prefix: str, titles: dict[str, str], taken: set[st
             element.set(key, _COLOUR.sub(lambda found: f"var(--{THEMED[found.group()]})", own))
 
 
-def _tell(element: ET.Element, kind: str, which: str, words: str) -> None:
+def _label(element: ET.Element, kind: str, which: str, words: str) -> None:
     element.set(f"data-{kind}", which)
     element.set("tabindex", "0")
     element.set("role", "button")

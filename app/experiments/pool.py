@@ -275,7 +275,7 @@ COUNT_EVERY_S = 2.0  # how often the threads are counted: a cluster may grow
 REAL_TIMES = 100.0  # simulated seconds in one of a core, where nothing has been measured
 SET_UP_S = 0.5  # of a session
 
-Tell = Callable[[Sequence[tuple[Trial, Outcome]]], None]
+OnEnded = Callable[[Sequence[tuple[Trial, Outcome]]], None]
 
 
 def pending(trials: Iterable[Trial], store: Store) -> list[Trial]:
@@ -287,17 +287,17 @@ def pending(trials: Iterable[Trial], store: Store) -> list[Trial]:
 
 def run_trials(
     trials: Iterable[Trial], store: Store, client: Any, *, expected_s: float = BATCH_S, run: RunOne = run_stored,
-    tell: Tell | None = None,
+    on_ended: OnEnded | None = None,
 ) -> None:  # fmt: skip
     """Run what is pending. expected_s: about how long a trial takes; run: what a worker does with it.
 
-    tell: is given what has ended and is kept. ValueError: the cluster has gone; what had come is kept.
+    on_ended: is called with what has ended and is kept. ValueError: the cluster has gone; what had come is kept.
     """
     running = _Running(pending(trials, store), client, run, expected_s)
     for ended in running.ended():
         store.add(ended)
-        if tell is not None:
-            tell(ended)
+        if on_ended is not None:
+            on_ended(ended)
 
 
 class _Running:

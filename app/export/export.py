@@ -19,9 +19,9 @@ from app.session import Session
 from app.session_snapshot import restore_session
 from disk import State, require_writable, whole_file
 from ratslam_live import command_of
-from web.http.asking import Submit, told
+from web.http.asking import Submit, ask_engine
 from web.http.commands import Malformed
-from web.http.export import Offer, Wish
+from web.http.export import ExportRequest, Offer
 from web.messages import ReadSession
 
 Format: TypeAlias = Literal["mcap", "tum", "g2o", "graphml", "csv", "png", "mp4"]
@@ -182,26 +182,26 @@ class PageExports:
             Offer(format=to, words=WORDS[to], refusal=None if kept or to in AT_A_MOMENT else NOT_KEPT) for to in FORMATS
         ]
 
-    async def write(self, to: str, submit: Submit, out: Path, wish: Wish) -> list[Path]:
+    async def write(self, to: str, submit: Submit, out: Path, wanted: ExportRequest) -> list[Path]:
         """Write the run on the page, or a stretch of it. ValueError says why it cannot be."""
         self.done = 0.0
         if to not in FORMATS:
             raise ValueError(f"a run can be had as {', '.join(FORMATS)}, got {to!r}")
-        state = await _state(submit) if to in AT_A_MOMENT and wish.whole else None
+        state = await _state(submit) if to in AT_A_MOMENT and wanted.whole else None
         if state is not None:
             await asyncio.to_thread(_write_now, to, state, out)
         else:  # also of a recording, which is no part of a state
-            await self._play_again(to, out, wish)
+            await self._play_again(to, out, wanted)
         return [file for file in files_of(to, out) if file.exists()]
 
-    async def _play_again(self, to: Format, out: Path, wish: Wish) -> None:
+    async def _play_again(self, to: Format, out: Path, wanted: ExportRequest) -> None:
         """In a process of its own: it takes as long as minutes, and the engine must not wait for it."""
         kept = self._kept()
         if kept is None:
             raise ValueError(NOT_KEPT)
         command = [*command_of("app"), "export", str(kept), "--to", to, "--out", str(out), "--say-share"]
-        command += ["--pictures", wish.pictures]
-        for name, time_s in (("--from", wish.from_s), ("--until", wish.until_s)):
+        command += ["--pictures", wanted.pictures]
+        for name, time_s in (("--from", wanted.from_s), ("--until", wanted.until_s)):
             command += [] if time_s is None else [name, repr(time_s)]
         nothing, pipe = asyncio.subprocess.DEVNULL, asyncio.subprocess.PIPE
         process = await asyncio.create_subprocess_exec(*command, stdin=nothing, stdout=pipe, stderr=pipe)
@@ -231,7 +231,7 @@ class PageExports:
 async def _state(submit: Submit) -> State | None:
     """None: the session is that of a recording."""
     try:
-        state = (await told(submit, ReadSession(), COPY_TIMEOUT_S)).result
+        state = (await ask_engine(submit, ReadSession(), COPY_TIMEOUT_S)).result
     except Malformed as error:
         raise ValueError(str(error)) from None
     assert state is None or isinstance(state, State)

@@ -172,7 +172,7 @@ class _Recorder:
         return _beams(self._now, first, SONAR_STEP_RAD, frame.dt, robot.sonar_range_m, beams)
 
     def _poses(self) -> None:
-        """The robot as it truly is and as it believes to be, each in a frame of its own."""
+        """Ground truth and pose estimate, each in a frame of its own."""
         session, now, truth = self._session, self._now, self._session.simulator.truth
         believed = session.estimate.pose_map_robot
         true = Pose2(truth.x, truth.y, truth.heading_rad)
@@ -273,7 +273,7 @@ def _transform(time_ns: int, parent: str, child: str, at: Pose2) -> Any:
 
 
 def _moved(time_ns: int, at: Pose2, speed: float, yaw_rate: float) -> Any:
-    """speed, yaw_rate: as the robot is told, to the last bit; the pose is what they add up to."""
+    """speed, yaw_rate: of the odometry, to the last bit; the pose is what they add up to."""
     twist = _message("geometry_msgs/Twist", _vector(speed), _vector(z=yaw_rate))
     return _message(
         "nav_msgs/Odometry", _header(time_ns, "odom"), "base_link",

@@ -178,7 +178,7 @@ class _Plate:
         return np.clip(np.round(shifted), -4 * SIDE, 4 * SIDE).astype(np.int32)
 
     def _map(self, session: Session) -> _Image:
-        """Plan, links, experiences; where the robot truly is (filled) and where it believes to be (ring)."""
+        """Plan, links, experiences; ground truth (filled) and pose estimate (ring)."""
         panel, map_ = _empty(), session.brain.experience_map
         walls = self._pixels(plan_of(session.simulator.world).walls.reshape(-1, 2)).reshape(-1, 2, 2)
         cv2.polylines(panel, list(walls), False, _WALL, 1, cv2.LINE_AA)

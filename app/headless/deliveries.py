@@ -59,7 +59,7 @@ class Deliveries:
             "succeeded": count - len(self._failures),
             "metres": about["metres"],
             "simulated_s": about["simulated_s"],
-            "failures": [_told(failure) for failure in self._failures],
+            "failures": [_failure_row(failure) for failure in self._failures],
             "views": now.views,
             "experiences": now.experiences,
             "links": now.links,
@@ -99,5 +99,5 @@ class Deliveries:
         return rows
 
 
-def _told(visit: Visited) -> dict[str, Any]:
+def _failure_row(visit: Visited) -> dict[str, Any]:
     return {"at_s": round(visit.began_s, 3), "goal": visit.experience, "reason": visit.why}

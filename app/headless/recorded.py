@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from app.evaluation.agreement import rmse
 from app.headless.report import rounded, size
-from app.protocol.course import TELL_AFTER, Progress
+from app.protocol.course import REPORT_AFTER, Progress
 from app.recordings.playing import Player, Step
 from app.recordings.recording import Pose
 from disk import whole_file
@@ -78,13 +78,13 @@ def run_recording(player: Player, progress: Progress | None = None) -> tuple[dic
     """
     trace, judging, began = Trace(), _Judging(), time.perf_counter()
     step: Step | None = None
-    told_s = 0.0
+    reported_s = 0.0
     for count, step in enumerate(player.steps(), start=1):
         trace.note(step)
         judging.note(step)
-        if progress is not None and count % TELL_AFTER == 0:
-            progress(step.moment.time_s - told_s, "playing")
-            told_s = step.moment.time_s
+        if progress is not None and count % REPORT_AFTER == 0:
+            progress(step.moment.time_s - reported_s, "playing")
+            reported_s = step.moment.time_s
     about = player.recording.about
     if step is None:
         raise ValueError(f"{about.name}: no moment of it can be played. {' '.join(about.problems[:1])}".strip())

@@ -177,7 +177,7 @@ class Uncertainty:
 
     def report(self) -> dict[str, Any]:
         """The robot's own sigma (m) while it was not lost, and the share of the time in which it was right to two
-        sigma; None without a belief that has one. And the share of the ticks in which it held itself to be lost."""
+        sigma; None without a belief that has one. And the share of the ticks in which the robot was lost."""
         sigma, off = np.array(self._sigma_m), np.array(self._off_m)
         judged = np.isfinite(off)
         right = float(np.mean(off[judged] <= 2 * sigma[judged])) if judged.any() else math.nan

@@ -88,7 +88,7 @@ def run_headless(
         **judged(session),
         "uncertainty": uncertainty.report(),
         **_growth(growth),
-        "goals": [_told(visit) for visit in course.visits],
+        "goals": [_visit_row(visit) for visit in course.visits],
         "kidnaps": kidnaps(session),
         "state_hash": session.state_hash(),
     }
@@ -107,7 +107,7 @@ def _ticks(course: Course, minutes: float, kidnap_at_s: Sequence[float], goals: 
         yield from course.go(f"goal {number} of {goals}", goal, place, GOAL_TIMEOUT_S, NEAR_ENOUGH_M)
 
 
-def _told(visit: Visited) -> dict[str, Any]:
+def _visit_row(visit: Visited) -> dict[str, Any]:
     return {
         "experience": visit.experience,
         "reached": visit.reached,

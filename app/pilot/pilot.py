@@ -1,4 +1,4 @@
-"""The pilot explores, obeys the hand, follows routes and gets free. It knows sensors and map, never the truth."""
+"""The pilot: exploration, driving by hand, route following, getting free. It reads sensors and map, never the ground truth."""
 
 from __future__ import annotations
 

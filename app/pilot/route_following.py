@@ -143,7 +143,7 @@ class RouteFollower:
     ) -> tuple[float, float] | None:
         """The next point to head for, metres in the robot's frame. None: it has arrived, or no route is known.
 
-        sure: [ours] a robot that is lost only believes to be at the goal. It looks around until it knows where it is.
+        sure: [ours] a lost robot is at the goal by its estimate only. It looks around until a place is accepted.
         test_routes.py::test_who_is_lost_has_not_arrived.
         """
         self.failed = False

@@ -7,7 +7,7 @@ but far by the links, which closes a loop, if `loop_share` is set. Only when not
 go into openings near by; in a large map by turns with where it has not been for longest, since openings alone lead on
 and on into new corridors and close no loop. On an island, as after a kidnap, it looks for the rest of its map: it does
 not go back, but into one opening after the other, round the posts of doors, and near where the island began: perhaps it
-was not carried at all, and then the rest lies there. It knows map, sonars and odometry only.
+was not carried at all, and then the rest lies there. Its input is map, sonars and odometry only.
 test_seeking.py::{test_it_goes_where_open_floor_was_seen, test_far_openings_are_sought_one_after_the_other,
 test_on_new_ground_for_long_it_goes_back, test_it_dares_twice_as_far_each_time_it_comes_back,
 test_with_nothing_new_it_goes_where_it_has_not_been_for_longest,

@@ -16,7 +16,7 @@ from app.session import Session
 
 MomentKind = Literal["tagged", "kidnap", "packet", "recovered", "reached", "failed", "step", "end"]
 Progress = Callable[[float, str], None]  # simulated seconds since the last call, what is being done
-TELL_AFTER = 10  # ticks between two calls of it
+REPORT_AFTER = 10  # ticks between two calls of it
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,7 +81,7 @@ class Course:
         self.visits: list[Visited] = []
         self.moments: list[Moment] = []
         self.met_at_s = math.inf  # when what was waited for happened
-        self._told = 0
+        self._reported = 0
         check_steps(session, self.steps)
 
     def ticks(self) -> Iterator[str]:
@@ -94,9 +94,9 @@ class Course:
         for step in steps:
             yield from step.carry_out(self)
 
-    def untold(self) -> list[Moment]:
-        """What was written down since this was asked last."""
-        new, self._told = self.moments[self._told :], len(self.moments)
+    def new_moments(self) -> list[Moment]:
+        """Those noted since the last call."""
+        new, self._reported = self.moments[self._reported :], len(self.moments)
         return new
 
     @property
@@ -201,7 +201,10 @@ class _Visit:
 
 
 def run_ticks(
-    course: Course, ticks: Iterable[str], watchers: Sequence[Callable[[], object]] = (), tell: Progress | None = None
+    course: Course,
+    ticks: Iterable[str],
+    watchers: Sequence[Callable[[], object]] = (),
+    progress: Progress | None = None,
 ) -> None:
     """Run a tick of the session after each of these, and call all watchers after it."""
     session, since_s = course.session, course.session.time_s
@@ -209,6 +212,6 @@ def run_ticks(
         session.tick()
         for watch in watchers:
             watch()
-        if tell is not None and session.tick_count % TELL_AFTER == 0:
-            tell(session.time_s - since_s, what)
+        if progress is not None and session.tick_count % REPORT_AFTER == 0:
+            progress(session.time_s - since_s, what)
             since_s = session.time_s

@@ -78,7 +78,7 @@ class Finding(Part):
         return [cls(measure=reference) for reference in _IN_BRACES.findall(text)]
 
 
-def told(text: str, rounds: Sequence[tuple[str, Measured]]) -> str:
+def fill_in(text: str, rounds: Sequence[tuple[str, Measured]]) -> str:
     """The text with what was found in the place of each {NAME} or {NAME of LABEL}."""
 
     def found(match: re.Match[str]) -> str:
@@ -142,7 +142,7 @@ class Scene(Part):
     tab: Literal["senses", "memory", "truth", "tick", "inspect", "office", "tune"] = "memory"
     speed: Annotated[float, Field(ge=0.25, le=16)] = 1.0
     steps: list[Step] = []
-    compare: PairName | None = None  # a second brain hears the same from the beginning on
+    compare: PairName | None = None  # a second brain gets the same input from the beginning on
 
     @property
     def config(self) -> Config:
@@ -345,12 +345,12 @@ def read_lesson(path: Path) -> Lesson:
 
 def check_lesson(lesson: Lesson) -> None:
     """ValueError says what does not fit together: a world, a place, a door."""
-    from app.protocol.performance import Performance, session_of
+    from app.protocol.lesson_round import LessonRound, session_of
     from app.views.history import History
 
     for number in range(lesson.round_count):
         session = session_of(lesson, number)
-        Performance(lesson, number, session, History(session))
+        LessonRound(lesson, number, session, History(session))
 
 
 def catalogue() -> Iterator[Lesson]:

@@ -31,20 +31,20 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Reading:
-    """words: what it is; told: a number of it, as in str.format; never: said when it did not happen (infinite)."""
+    """words: what it is; pattern: for its value, as in str.format; never: said when it did not happen (infinite)."""
 
     words: str
-    told: str = "{:.0f}"
+    pattern: str = "{:.0f}"
     never: str = "never"
 
     def shown(self, value: float) -> str:
         """A value in words."""
         if math.isnan(value):
             return "unknown"
-        return self.told.format(value) if math.isfinite(value) else self.never
+        return self.pattern.format(value) if math.isfinite(value) else self.never
 
 
-S, M, CM, SHARE = "{:.1f} s", "{:.1f} m", "{:.2f} m", "{:.0%}"  # how readings are told
+S, M, CM, SHARE = "{:.1f} s", "{:.1f} m", "{:.2f} m", "{:.0%}"  # patterns of readings
 
 
 class Subject:
@@ -56,11 +56,11 @@ class Subject:
 
     @property
     def brain(self) -> RatSlam:
-        return self._heard.brain
+        return self._judged.brain
 
     @property
     def evaluation(self) -> Evaluation:
-        return self._heard.evaluation
+        return self._judged.evaluation
 
     @property
     def history(self) -> History:
@@ -70,11 +70,11 @@ class Subject:
 
     @property
     def off_m(self) -> float:
-        """Between the robot and where this brain believes it to be; NaN where that has no meaning."""
+        """Between ground truth and the pose estimate of this brain; NaN where that has no meaning."""
         return self.evaluation.belief_off(self.session.simulator.truth, self.brain.experience_map)[0]
 
     @property
-    def _heard(self) -> Session | Companion:
+    def _judged(self) -> Session | Companion:
         if not self._second:
             return self.session
         if self.session.companion is None:
@@ -190,7 +190,7 @@ class Learnt(Measure):
 
 
 class Belief(Measure):
-    """Where the robot believes itself to be, against where it is; consistency over time (A 6.5)."""
+    """Pose estimate against ground truth; consistency over time (A 6.5)."""
 
     of_any_brain = True
     OFF_M = 0.5

@@ -197,7 +197,7 @@ class Trace:
     truth: _Array  # (n, 3) true x, y, heading, office frame
     cells: _Array  # (n, 3) the winning packet: x, y in cells, heading in rad
     mass: _Array  # (n, 4) activity of the strongest packets, 0 where there are fewer
-    off_m: _Array  # (n,) between the robot and where it believes itself to be; NaN where that has no meaning
+    off_m: _Array  # (n,) between ground truth and pose estimate; NaN where that has no meaning
     residual: _Array  # (n,) by how much map and links disagree, m
     views: NDArray[np.int64]  # (n,) recruited so far
     experiences: NDArray[np.int64]  # (n,) made so far

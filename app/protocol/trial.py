@@ -82,14 +82,14 @@ class Result:
     state_hash: str
 
 
-def run_trial(trial: Trial, tell: Progress | None = None) -> tuple[Result, Course]:
+def run_trial(trial: Trial, progress: Progress | None = None) -> tuple[Result, Course]:
     """Run a trial to its end."""
     from app.protocol.course import run_ticks
 
     began = time.perf_counter()
     course = trial.begin()
     measuring = Measuring(course, trial.kinds)
-    run_ticks(course, course.ticks(), [measuring.note], tell)
+    run_ticks(course, course.ticks(), [measuring.note], progress)
     scores = {name: float(value) for name, value in measuring.values().items() if math.isfinite(value)}
     session = course.session
     wall_s = time.perf_counter() - began

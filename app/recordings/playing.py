@@ -88,7 +88,7 @@ class Player:
         brain, ties, reader = self.brain(), self.new_ties(), self.reader()
         for moment in self.recording.moments():
             sensed = reader.read(moment)
-            yield Step(moment, sensed.tell(brain, ties), brain, sensed.odometry)
+            yield Step(moment, sensed.step(brain, ties), brain, sensed.odometry)
 
 
 @kind("moment reader/1")
@@ -96,7 +96,7 @@ class MomentReader:
     """What the motion of a recording is read with: all that decides what a brain is given of the moments to come."""
 
     def __init__(self, motion: Motion, order: NDArray[np.int64]) -> None:
-        """order: in which the brain is told the ranges."""
+        """order: in which the brain gets the ranges."""
         self._motion, self._order = motion, order
 
     def read(self, moment: Moment) -> SensorInput:
@@ -154,7 +154,7 @@ def columns_of(turned_rad: float, columns: int, field_of_view: float) -> int:
 
 
 def _front_end(recording: Recording) -> str:
-    """What it sees with: a camera, beside sonars or not, or a laser."""
+    """The exteroceptive sensors: a camera, beside sonars or not, or a laser."""
     about = recording.about
     if "camera" not in about.has:
         if not is_laser(about):
@@ -176,7 +176,7 @@ def _lengths(base: Config, scale: float) -> dict[str, Value]:
 
 
 def _views(recording: Recording, seen: Survey, scale: float) -> dict[str, Value]:
-    """How wide the robot sees, and how alike views must be."""
+    """Field of view and match threshold."""
     values: dict[str, Value] = {"local_view.field_of_view": seen.field_of_view, "local_view.shift": seen.shift}
     if "camera" not in recording.about.has and is_laser(recording.about):
         angles = recording.about.beam_angles_rad  # half a beam to either side is seen, too

@@ -40,7 +40,7 @@ class ScanRules:
     confirmed: bool = True  # an observation counts where scans agree; off: every one does, as the gate lets it
     mutual: bool = True  # laid either way, scans must say the same, and no place near fit as well; off: laid one way
     weighed: bool = True  # a match weighs less where walls tell little of a direction; off: all weigh the same
-    neighbours: bool = True  # a match far from where the robot believes to be needs a second one; off: one is enough
+    neighbours: bool = True  # a match far from the pose estimate needs a second one; off: one is enough
 
 
 IDENTITY = Pose2(0.0, 0.0, 0.0)
@@ -310,7 +310,7 @@ class ScanTies:
         self._now: Points | None = None
 
     def see(self, ranges_m: NDArray[np.float64] | None) -> None:
-        """What the robot sees now."""
+        """The newest scan."""
         self._now = None if ranges_m is None else points_of(ranges_m, self._angles, self._limit_m)
 
     def made(self, map_: ExperienceMap) -> None:
@@ -365,7 +365,7 @@ class ScanTies:
         return found.pose, sigma
 
     def _agreed(self, map_: ExperienceMap, now: Points, old: int, found: Pose2) -> bool:
-        """Whether that is about where the robot believes to be, or else the scans made next to the old one say the same."""
+        """Whether that is near the pose estimate, or else the scans made next to the old one say the same."""
         there = map_.pose(old).compose(found)
         if alike(there, map_.robot_here, NEAR_TIMES):
             return True

@@ -127,7 +127,7 @@ class PastRoom:
 
 
 class TimeMachine:
-    """Call `ticked` after each tick of the live session, and `told` for each order that it was given."""
+    """Call `ticked` after each tick of the live session, and `note_order` for each order that it carried out."""
 
     def __init__(self, session: Session, history: History, room: PastRoom | None = None) -> None:
         """The session must be at the beginning of what can be gone back to."""
@@ -147,7 +147,7 @@ class TimeMachine:
         """Of what memory had no room for."""
         return self._chunks.spilled_nbytes
 
-    def told(self, order: Order) -> None:
+    def note_order(self, order: Order) -> None:
         orders = self.live.orders
         if orders and overtakes(order, orders[-1]):
             orders[-1] = order

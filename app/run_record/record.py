@@ -92,9 +92,9 @@ class RunRecord:
 
     def _recorded(self) -> Session:
         """ValueError: its recording has moved, has changed, or cannot be played."""
-        from app.recordings.apart import ReadApart
         from app.recordings.opening import fingerprint
         from app.recordings.playing import Player
+        from app.recordings.reader_process import ReaderProcess
         from app.session import played_session
 
         header, kept = self.header, self.header.recording
@@ -109,7 +109,7 @@ class RunRecord:
             raise ValueError(f"{whose}, which cannot be read: {error.strerror or error}") from None
         if not same:
             raise ValueError(f"{whose}, which has changed since: the run cannot be played again")
-        return played_session(Player(ReadApart(path), header.seed, header.config, path), header.seed)
+        return played_session(Player(ReaderProcess(path), header.seed, header.config, path), header.seed)
 
     def orders_after(self, tick: int) -> Sequence[Order]:
         return orders_at(self.orders, tick)
@@ -138,7 +138,7 @@ _NUMBERS = struct.Struct("<12d")
 
 
 def tick_checksum(session: Session) -> bytes:
-    """Tells the tick that the session has just run from another: where the robot is, what it sees, where it believes to be. It
+    """A checksum of the tick that the session has just run: ground truth, what is sensed, pose estimate. It
     costs some microseconds; a `state_hash` ten thousand times that.
 
     Of the picture it holds how much it differs from the most similar view: a sum over the picture alone would cost more

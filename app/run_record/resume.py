@@ -9,8 +9,8 @@ from app.run_record.record import tick_checksum
 from app.run_record.states import newest_state
 from app.session import Session
 
-TELL_AFTER = 10  # ticks between two calls of `tell`
-Tell = Callable[[float], object]  # simulated seconds since the last call
+REPORT_AFTER = 10  # ticks between two calls of `progress`
+Progress = Callable[[float], object]  # simulated seconds since the last call
 
 
 class ReplayError(ValueError):
@@ -26,15 +26,15 @@ class ReplayError(ValueError):
         )
 
 
-def resumed(run: KeptRun, tell: Tell = lambda _s: None) -> Session:
+def resumed(run: KeptRun, progress: Progress = lambda _s: None) -> Session:
     """The session where the run was when it was left: from the newest state beside it, else from its beginning.
 
     ReplayError: it comes out differently. ValueError: it cannot be run again.
     """
-    return replayed(run, tell, newest_state(run))
+    return replayed(run, progress, newest_state(run))
 
 
-def replayed(run: KeptRun, tell: Tell = lambda _s: None, session: Session | None = None) -> Session:
+def replayed(run: KeptRun, progress: Progress = lambda _s: None, session: Session | None = None) -> Session:
     """Run it again, from its beginning or from this session on, and compare each checksum and each hash. Returns the session at
     its end, with all orders.
 
@@ -44,13 +44,13 @@ def replayed(run: KeptRun, tell: Tell = lambda _s: None, session: Session | None
     session = next(sessions)
     began = session.tick_count
     if began:
-        tell(session.time_s)  # what need not be run again is done
+        progress(session.time_s)  # what need not be run again is done
     for session in sessions:
         tick = session.tick_count
         if tick_checksum(session) != run.checksum(tick):
             raise ReplayError(run, tick, "the robot or what it sees is elsewhere")
         if tick in run.hashes and session.state_hash() != run.hashes[tick]:
             raise ReplayError(run, tick, "its state has another hash")
-        if (tick - began) % TELL_AFTER == 0:
-            tell(TELL_AFTER * session.frame.dt)
+        if (tick - began) % REPORT_AFTER == 0:
+            progress(REPORT_AFTER * session.frame.dt)
     return session

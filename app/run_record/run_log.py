@@ -136,11 +136,11 @@ class LogFile:
         self._file.close()
 
 
-TICKS_A_LINE = 500  # at most: what was told since the keeper looked last is one line
+TICKS_A_LINE = 500  # at most: the ticks since the last flush are one line
 
 
 class RunLog:
-    """What a run tells, as lines: ticks are gathered, and every other line comes behind all ticks up to its own."""
+    """The entries of a run as lines: ticks are gathered, and every other line comes behind all ticks up to its own."""
 
     def __init__(self, file: LogFile, world: str, tick: int = 0, orders: int = 0, edited_bytes: int = 0) -> None:
         """world: as last edited; tick: the last one in the file, which has so many orders and such edits."""

@@ -101,11 +101,11 @@ class States:
             with whole_file(self._folder / STATE) as file:
                 write_state(state, file, json.dumps(asdict(about)))
         except ValueError as error:
-            self._tell("size", f"the brain cannot be kept: {error}")
+            self._complain_once("size", f"the brain cannot be kept: {error}")
         else:
-            self._tell("growth", state.outgrowing)
+            self._complain_once("growth", state.outgrowing)
 
-    def _tell(self, about: str, words: str | None) -> None:
+    def _complain_once(self, about: str, words: str | None) -> None:
         """Once, until there is another complaint or none."""
         if words and about != self._complained:
             self._complain(words)

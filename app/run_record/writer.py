@@ -1,4 +1,4 @@
-"""A run on its way to the disk while it goes on, through three threads, none of which the engine waits for: the engine tells
+"""A run on its way to the disk while it goes on, through three threads, none of which the engine waits for: the engine gives
 ticks, orders and now and then a copy of the session to a `RunFeed`; the keeper's thread turns them into the lines of a
 `LogWriter`; copies are hashed and saved in a third (states.py). A branch is a run of its own, with the other's past up to
 where it left it."""
@@ -44,18 +44,18 @@ class Fork:
 
 
 class RunFeed:
-    """What the engine tells of the run of one session. It waits in `told` for the keeper's thread."""
+    """The log entries of the run of one session. It waits in `entries` for the keeper's thread."""
 
     def __init__(
-        self, session: Session, beginning: Beginning | KeptRun | Fork, tell: Callable[[], object] = lambda: None
+        self, session: Session, beginning: Beginning | KeptRun | Fork, on_entry: Callable[[], object] = lambda: None
     ) -> None:
-        """beginning: of the run, or the kept run that goes on. tell: is called when something is told that should not be
+        """beginning: of the run, or the kept run that goes on. on_entry: is called at an entry that should not be
         lost."""
         self.beginning = beginning
         self.folder: Path | None = None  # once something of it is on the disk
-        self.told: deque[Callable[[LogWriter], object]] = deque()
-        self.hash_cost_s = 0.0  # of the last copy, as the thread that made it tells
-        self._tell, self._open = tell, True
+        self.entries: deque[Callable[[LogWriter], object]] = deque()
+        self.hash_cost_s = 0.0  # of the last copy, measured by the thread that made it
+        self._on_entry, self._open = on_entry, True
         self._ordered_at = session.tick_count  # the tick of the last order
         self._copied_s, self._cost_s, self._at = session.time_s, 0.0, time.monotonic()
 
@@ -63,21 +63,21 @@ class RunFeed:
         """The session has run a tick. Its orders for the next one have not been given yet."""
         if not self._open:
             return
-        self.tell_tick(session.tick_count, tick_checksum(session))
+        self.enter_tick(session.tick_count, tick_checksum(session))
         if session.tick_count % LOOK_AFTER == 0 and self._is_due(session):
             began = time.thread_time()
             self._copy(session, copy_state(session))
             self._cost_s = time.thread_time() - began
             self._copied_s, self._at = session.time_s, time.monotonic()
 
-    def tell_tick(self, tick: int, checksum: bytes) -> None:
-        self.told.append(lambda writer: writer.tick(tick, checksum))
+    def enter_tick(self, tick: int, checksum: bytes) -> None:
+        self.entries.append(lambda writer: writer.tick(tick, checksum))
 
     def order(self, order: Order) -> None:
         if self._open:
             self._ordered_at = order.tick
-            self.told.append(lambda writer: writer.order(order))
-            self._tell()
+            self.entries.append(lambda writer: writer.order(order))
+            self._on_entry()
 
     def leave(self, session: Session) -> None:
         """Nobody runs the session any more. After an order that no tick has followed its state is none of the log."""
@@ -86,20 +86,20 @@ class RunFeed:
 
     def mark(self, rows: tuple[Bookmark, ...]) -> None:
         if self._open:
-            self.told.append(lambda writer: writer.mark(rows))
-            self._tell()
+            self.entries.append(lambda writer: writer.mark(rows))
+            self._on_entry()
 
     def end(self, why: str) -> None:
         if self._open:
             self._open = False
-            self.told.append(lambda writer: writer.end(why))
-            self._tell()
+            self.entries.append(lambda writer: writer.end(why))
+            self._on_entry()
 
     def _copy(self, session: Session, copy: Session, *, last: bool = False) -> None:
         source = session.source
         world = source.worlds[-1].name if source.worlds else ""
         kept = Copy(session.tick_count, session.time_s, source.world_texts, copy, world, last)
-        self.told.append(lambda writer: writer.copy(kept))
+        self.entries.append(lambda writer: writer.copy(kept))
 
     def _is_due(self, session: Session) -> bool:
         """[ours] Wall time decides only how often the state is kept, never what it is.
@@ -116,7 +116,7 @@ _numbers = count(1)
 
 
 class LogWriter:
-    """Writes one run. Use it from one thread. No error leaves it: what cannot be kept is told of once, and the run goes on."""
+    """Writes one run. Use it from one thread. No error leaves it: what cannot be kept is reported once, and the run goes on."""
 
     def __init__(self, feed: RunFeed, complain: Callable[[str], object]) -> None:
         self._feed, self._complain = feed, complain
@@ -130,12 +130,12 @@ class LogWriter:
             self._give_up(error)
 
     def write(self) -> None:
-        """Write what was told since the last time."""
-        told = self._feed.told
-        while told and not self._given_up:
-            self._try(told.popleft(), self)
+        """Write the entries made since the last call."""
+        entries = self._feed.entries
+        while entries and not self._given_up:
+            self._try(entries.popleft(), self)
         if self._given_up:
-            told.clear()
+            entries.clear()
         else:
             self._try(self._log.flush)
 
@@ -186,7 +186,7 @@ class LogWriter:
                 write_state(encode(beginning.brain), file)
         return partial(self._file.add, written(header))
 
-    # ------------------------------------------------------------ what is told
+    # ------------------------------------------------------------ the entries
 
     def tick(self, tick: int, checksum: bytes) -> None:
         self._log.tick(tick, checksum)
@@ -207,7 +207,7 @@ class LogWriter:
     def _hashed(self, tick: int, state_hash: str, experiences: int, cost_s: float) -> None:
         """Called in the thread that makes hashes of copies."""
         self._feed.hash_cost_s = cost_s
-        self._feed.told.append(lambda writer: writer._log.hash(tick, state_hash, experiences))
+        self._feed.entries.append(lambda writer: writer._log.hash(tick, state_hash, experiences))
 
     # ------------------------------------------------------------
 
@@ -215,7 +215,7 @@ class LogWriter:
         try:
             write(*values)
         except OSError as error:  # it waits in the log
-            self._tell(f"the run cannot be kept in {self._folder}: {error.strerror or error}; it goes on, and is kept "
+            self._complain_once(f"the run cannot be kept in {self._folder}: {error.strerror or error}; it goes on, and is kept "
                        "when there is room")  # fmt: skip
         except ValueError as error:
             self._give_up(error)
@@ -225,9 +225,9 @@ class LogWriter:
         self._given_up = True
         self._feed.end("given up")
         where = f" in {self._folder}" if self._folder.name else ""
-        self._tell(f"the run is not kept{where}: {why or error}; it goes on")
+        self._complain_once(f"the run is not kept{where}: {why or error}; it goes on")
 
-    def _tell(self, words: str) -> None:
+    def _complain_once(self, words: str) -> None:
         if not self._complained:
             self._complained = True
             self._complain(words)
@@ -284,7 +284,7 @@ class RunKeeper:
         self._complain, self._budget_mb = complain, budget_mb
         self._begun: queue.SimpleQueue[RunFeed] = queue.SimpleQueue()
         self._feed: RunFeed | None = None  # of the run that goes on, in the engine's thread
-        self._told, self._leaving = threading.Event(), False
+        self._entered, self._leaving = threading.Event(), False
         self._thread = threading.Thread(target=self._work, name="run keeper", daemon=True)
 
     def start(self) -> None:
@@ -295,7 +295,7 @@ class RunKeeper:
         if self._feed is not None:
             self._feed.end("the program ended")
         self._leaving = True
-        self._told.set()
+        self._entered.set()
         if self._thread.ident is not None:
             self._thread.join(LEAVING_S)
 
@@ -306,7 +306,7 @@ class RunKeeper:
 
     def feed(self, session: Session, beginning: Beginning | KeptRun | Fork) -> RunFeed:
         """The feed of a session that has just begun. Nothing is kept before `begin`."""
-        return RunFeed(session, beginning, self._told.set)
+        return RunFeed(session, beginning, self._entered.set)
 
     def begin(self, feed: RunFeed) -> None:
         """Another run takes the place of the one that went on."""
@@ -314,7 +314,7 @@ class RunKeeper:
             self._feed.end("another run began")
         self._feed = feed
         self._begun.put(feed)
-        self._told.set()
+        self._entered.set()
 
     # ------------------------------------------------------------ the thread
 
@@ -322,9 +322,9 @@ class RunKeeper:
         writer: LogWriter | None = None
         leaving = False
         while not leaving:
-            self._told.wait(LOOK_EVERY_S)
-            self._told.clear()
-            leaving = self._leaving  # what was told before that is still written
+            self._entered.wait(LOOK_EVERY_S)
+            self._entered.clear()
+            leaving = self._leaving  # entries made before that are still written
             while not self._begun.empty():
                 if writer is not None:
                     writer.finish()

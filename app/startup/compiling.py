@@ -96,13 +96,13 @@ class Compiling:
         """Whether there was anything to do."""
         return self._process is not None
 
-    def wait(self, tell: Callable[[str], None]) -> None:
-        """Wait until everything is compiled or `stop` is called. tell: is given the progress in words."""
+    def wait(self, progress: Callable[[str], None]) -> None:
+        """Wait until everything is compiled or `stop` is called. progress: is called with it in words."""
         if self._process is None:
             return
         assert self._process.stdout is not None
         for done, _ in enumerate(self._process.stdout, start=1):
-            tell(f"{WORDS}: {done} {'function' if done == 1 else 'functions'} done")
+            progress(f"{WORDS}: {done} {'function' if done == 1 else 'functions'} done")
         if sys.stderr.isatty():
             print(file=sys.stderr)
 
@@ -265,7 +265,7 @@ class _Count(Listener):
             print(flush=True)
 
 
-class Waking:
+class EngineStarter:
     """Starts the engine when its kernels are compiled, from a thread of its own. The page shows the progress."""
 
     def __init__(self, engine: EngineThread, compiling: Compiling) -> None:
@@ -286,14 +286,14 @@ class Waking:
         self._engine.stop(patience_s)
 
     def _wake(self) -> None:
-        self._compiling.wait(self._tell)
+        self._compiling.wait(self._show_progress)
         self._engine.latest.waking = "loading the office and the brain"
         if not kernel_cache.in_memory:
             _load_kernels()
         if not self._stopped:
             self._engine.start()
 
-    def _tell(self, words: str) -> None:
+    def _show_progress(self, words: str) -> None:
         self._engine.latest.waking = words
         say_how_far(words)
 

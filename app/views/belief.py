@@ -1,4 +1,4 @@
-"""How sure the robot is of its place, where else it may be, and what spoke for that. Poses in m and rad, map frame."""
+"""Uncertainty of the pose estimate, the hypotheses beside it, and the evidence for each. Poses in m and rad, map frame."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from web.messages import Belief, Hypothesis, Spread
 
 POSSIBLE = 3.0  # nats: a place that is twenty times less likely than the likeliest, or than a new one, is not counted
 MOST_LOG_ODDS = 14.0  # a million to one is enough
-MOST_OTHERS = 4  # places that are shown beside that where it believes itself to be
+MOST_OTHERS = 4  # hypotheses that are shown beside the pose estimate
 HELD_M = 1.0  # a place stands for a state of the pose cells if an experience is so near
 LEAST_SHARE = 0.02  # how likely a place must be before one is shown that a robot in doubt may be at
 
@@ -47,7 +47,7 @@ def possible_places(map_: ExperienceMap) -> NDArray[np.float64]:
 
 
 def other_places(map_: ExperienceMap) -> tuple[Hypothesis, ...]:
-    """Where a robot that was carried or is in doubt may be instead of where it believes to be, the likeliest first."""
+    """The hypotheses beside the pose estimate, after a kidnap or in doubt, the likeliest first."""
     rows, beside = map_.evidence.weighed(map_.robot_here)
     if not len(rows) or not (map_.carried or map_.evidence.in_doubt):
         return ()
@@ -122,8 +122,8 @@ SAME_M, SAME_RAD = 0.5, 0.4  # in a tick no hypothesis goes farther
 BARS = 24
 
 
-class SpokenFor:
-    """What spoke for the place that a robot believes, and what against it. Call `watch` after each tick."""
+class HypothesisHistory:
+    """The evidence for and against the hypothesis that became the pose estimate. Call `watch` after each tick."""
 
     def __init__(self) -> None:
         self._kept: deque[tuple[float, NDArray[np.float64]]] = deque(maxlen=MOST_TICKS)

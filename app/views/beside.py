@@ -82,23 +82,23 @@ def goals_of(session: Session, companion: Companion) -> tuple[int, ...]:
 
 def differences_of(companion: Companion) -> tuple[Difference, ...]:
     """What has differed so far, each by its first time, the earliest first."""
-    parting, found = companion.parting, list[Difference]()
-    if parting.packet is not None:
-        found.append(Difference("packet", *parting.packet, "the winning packets are at different places"))
-    if parting.view is not None:
-        tick, time_s, one, other = parting.view
+    divergence, found = companion.divergence, list[Difference]()
+    if divergence.packet is not None:
+        found.append(Difference("packet", *divergence.packet, "the winning packets are at different places"))
+    if divergence.view is not None:
+        tick, time_s, one, other = divergence.view
         found.append(
             Difference("view", tick, time_s, f"{companion.first} sees {_view(one)}, {companion.name} {_view(other)}")
         )
-    if parting.experience is not None:
-        tick, time_s, one, other = parting.experience
+    if divergence.experience is not None:
+        tick, time_s, one, other = divergence.experience
         found.append(
             Difference(
                 "experience", tick, time_s, f"{companion.first} is in experience #{one}, {companion.name} in #{other}"
             )
         )
-    if parting.link is not None:
-        tick, time_s, start, end, first = parting.link
+    if divergence.link is not None:
+        tick, time_s, start, end, first = divergence.link
         who = companion.first if first else companion.name
         found.append(Difference("link", tick, time_s, f"only {who} has the link #{start} to #{end}"))
     return tuple(sorted(found, key=lambda difference: difference.tick))

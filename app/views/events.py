@@ -15,7 +15,7 @@ from app.views.reasons import Reasons, words_of
 from disk import kind
 from ratslam_core import find_places
 from web.messages import Closure, Event, EventKind, GoalState, Packet, Snap, WhyReport
-from web.messages.told import goal_meaning, odds_words
+from web.messages.robot_status import goal_meaning, odds_words
 
 MOST_EVENTS = 2000
 
@@ -131,7 +131,7 @@ class EventWatch:
         self._new = 0  # experiences since the robot was last at one that it made long before
         self.last_snap: Snap | None = None
         self.lost = False
-        self._at_a_loss = False  # lost, or not yet on the map again although it believes a place
+        self._at_a_loss = False  # lost, or its submap not yet merged although a hypothesis is accepted
         self._lost_s: float | None = None  # when it noticed that it was carried, until its map is one again
         self._believed, self._joined = False, 0  # some place since then; submaps that were joined before
         self._corrected = session.brain.experience_map.corrected  # how often it proved to be elsewhere
@@ -200,7 +200,7 @@ class EventWatch:
         self._watch_error()
 
     def _watch_belief(self, carried: bool) -> None:
-        """Marks that a robot that knows that it was carried believes a place again, and that its map is one again."""
+        """Marks that a hypothesis is accepted again after a kidnap, and that the submaps are merged."""
         session, map_ = self._session, self._session.brain.experience_map
         belief, joined = map_.belief, map_.islands.joined
         if carried and self._lost_s is None:
@@ -225,7 +225,7 @@ class EventWatch:
         self._corrected = map_.corrected
 
     def _watch_goal(self) -> None:
-        """Marks what is true of the goal. What a robot that is lost believes of it waits until it knows where it is."""
+        """Marks what is true of the goal. While the robot is lost this waits until a place is accepted."""
         told = self._session.pilot.goal_state
         if told is None or told[0] != self._goal_state[0]:
             self._goal_state = (None if told is None else told[0], "")

@@ -133,7 +133,7 @@ REACH_M = 1.5  # an experience that was truly made this near to a place stands f
 def known_places(session: Session) -> tuple[KnownPlace, ...]:
     """The named places, and where the map has those at which the robot has been: for people, who click on names.
 
-    Only people know where the names belong. The robot is told a place of its own map, as with any click on the map.
+    The names are in the office's frame; the robot gets a place of its own map, as with any click on the map.
     """
     if not session.source.worlds:
         return ()

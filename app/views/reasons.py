@@ -12,15 +12,15 @@ from numpy.typing import NDArray
 
 from app.session import Session
 from app.views.arrays import camera_image, packet_of, stored_picture
-from app.views.belief import SpokenFor
+from app.views.belief import HypothesisHistory
 from ratslam_core import Packet, Pose2
 from ratslam_core.extensions.evidence import Belief
 from web import messages as m
-from web.messages.told import odds_words
+from web.messages.robot_status import odds_words
 
 MOST_KEPT = 200
 MOST_VIEWS = 4
-LOOKS_BACK_S = 10.0  # a robot that feels lost: what it recognised in this time
+LOOKS_BACK_S = 10.0  # a lost robot: the views recognised in this time
 
 
 class Reasons:
@@ -29,7 +29,7 @@ class Reasons:
     def __init__(self, session: Session, kept: dict[int, m.WhyReport]) -> None:
         """kept: the chains, by the numbers of their events."""
         self._session, self._kept = session, kept
-        self.causes, self._spoken = SnapCauses(session), SpokenFor()
+        self.causes, self._hypotheses = SnapCauses(session), HypothesisHistory()
         self._before = self._now = self._packets()
         self._robot_before = self._robot = session.brain.experience_map.robot
         self._seen: list[tuple[float, int]] = []  # when each of the views of late was recognised first
@@ -45,7 +45,7 @@ class Reasons:
     def watch(self) -> None:
         session = self._session
         self.causes.watch()
-        self._spoken.watch(session.time_s, session.brain.experience_map)
+        self._hypotheses.watch(session.time_s, session.brain.experience_map)
         self._before, self._now = self._now, self._packets()
         self._robot_before, self._robot = self._robot, session.brain.experience_map.robot
         view = session.estimate.recognition.view
@@ -121,7 +121,7 @@ class Reasons:
 
     def believes(self, event: m.Event, belief: Belief) -> None:
         """A robot that was carried believes a place again."""
-        said = self._spoken.of(belief.pose)
+        said = self._hypotheses.of(belief.pose)
         since_s = said[0][0] if said else event.time_s
         spoken, against = (sum(sign * nats > 0 for _, nats in said) for sign in (1, -1))
         view = int(self._session.brain.experience_map.views[belief.experience])

@@ -157,7 +157,7 @@ class Snapshots:
             switches=() if recorded else self._actors.switches(session.simulator.world),
             inspected=self._inspection.part(session.tick_count),
             active_experience=brain.experience_map.active,
-            walk=None if self.walk is None else self.walk.told,
+            walk=None if self.walk is None else self.walk.view,
             presets=() if recorded else _PRESETS,
             preset=preset,
             office=self.office,

@@ -50,7 +50,7 @@ class Walk:
     def __init__(self, stills: tuple[Still, ...], at: int = 0) -> None:
         self._stills, self._at = stills, at
         self.parts = stills[at].parts
-        self.told = TickWalk(tuple(still.stage for still in stills), at)
+        self.view = TickWalk(tuple(still.stage for still in stills), at)
 
     def moved(self, by: int) -> Walk | None:
         """The walk `by` stages further; None beyond the last or the first stage."""

@@ -6,10 +6,10 @@ import re
 
 import pytest
 
-from app.engine.lesson_run import Teaching
+from app.engine.lesson_supervisor import Teaching
 from app.gallery import StoredLessons, check_formulas
 from app.protocol.lesson import Lesson, catalogue, check_lesson
-from app.protocol.performance import perform_round, report_of
+from app.protocol.lesson_round import report_of, run_round
 from ratslam_core.params.additions import ADDITIONS
 from sim2d import load_world
 from tests.unit.app.engines import an_engine, tell
@@ -28,8 +28,8 @@ def test_it_keeps_what_it_promises(lesson: Lesson) -> None:
     assert report.kept, "\n".join(report.lines)
     comes_out_as_it_stands_there(lesson, report.lines)
     most = MOST_TICKS if lesson.scene.compare is None else MOST_TICKS // 2  # two brains take twice as long
-    for performance in report.performances:
-        assert performance.scene_ticks <= most, f"{performance.label}: the scene takes {performance.scene_ticks} ticks"
+    for round_ in report.rounds:
+        assert round_.scene_ticks <= most, f"{round_.label}: the scene takes {round_.scene_ticks} ticks"
 
 
 PAIRS = [lesson.name for lesson in LESSONS if lesson.pair is not None]
@@ -58,7 +58,7 @@ def test_the_square_comes_apart_when_it_is_blindfolded() -> None:
     square = NAMED["square"]
     (blindfold, go_on) = square.sandbox[0].commands
     assert go_on == {"type": "resume"}
-    session = perform_round(square, 2).session
+    session = run_round(square, 2).session
     session.set_parameter(blindfold["name"], blindfold["value"])
     session.set_mode("explore")
     for _ in range(round(300 / session.frame.dt)):

@@ -10,7 +10,7 @@ import pytest
 from app.config import Config
 from app.config.presets import pairs_beside
 from app.protocol.lesson import Lesson, catalogue
-from app.protocol.performance import perform_round, report_of
+from app.protocol.lesson_round import report_of, run_round
 from web.shared import TABS
 
 ROOT = Path(__file__).parents[2]
@@ -89,7 +89,7 @@ def test_the_rates_come_out_on_other_seeds_as_in_the_answers(seed: int) -> None:
 @pytest.mark.long
 def test_the_kidnaps_take_on_other_seeds_what_lesson_and_answers_say() -> None:
     times = re.findall(r"Seeds 1 to 6: ([\d., ]+) s\.", PAGE)[0].split(", ")
-    found = [report_of(LESSONS["kidnapped"], seed).performances[0].values for seed in range(1, 7)]
+    found = [report_of(LESSONS["kidnapped"], seed).rounds[0].values for seed in range(1, 7)]
     took = [values["found_s"] for values in found if values is not None]
     assert [f"{time:.1f}" for time in took] == times
     assert f"{', '.join(f'{time:.0f}' for time in took[:5])} and {took[5]:.0f} s" in LESSONS["kidnapped"].because
@@ -98,7 +98,7 @@ def test_the_kidnaps_take_on_other_seeds_what_lesson_and_answers_say() -> None:
 @pytest.mark.parametrize(("name", "kind", "answer"), [("loop", "closure", 4), ("snap", "snap", 5)])
 def test_what_inspect_tells_of_it_stands_in_the_answers(name: str, kind: str, answer: int) -> None:
     """When it was, the views that led to it, by how much they differ or how often they were seen."""
-    log = perform_round(LESSONS[name], 0).history.log
+    log = run_round(LESSONS[name], 0).history.log
     why = next(report for report in log.why.values() if report.kind == kind)
     chain = " ".join(words for _, words in why.chain)
     (task,) = re.findall(rf"^{answer}\. (.*?)^{answer + 1}\. ", PAGE, re.MULTILINE | re.DOTALL)

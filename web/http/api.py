@@ -16,7 +16,7 @@ from fastapi.staticfiles import StaticFiles
 from starlette.exceptions import HTTPException
 from starlette.requests import ClientDisconnect
 
-from web.http.asking import Submit, body_of, json_response, told
+from web.http.asking import Submit, ask_engine, body_of, json_response
 from web.http.brains import BrainDownload, Offered, add_kept_offer, unpacked
 from web.http.class_door import Classroom, add_classroom
 from web.http.commands import READER, CommandAccepted, Declined, Malformed, Problem, check, problem, read_object, wrong
@@ -140,7 +140,7 @@ def _add_experience(app: FastAPI, submit: Submit) -> None:
     async def experience(number: int = Path(ge=0, description="its number in the map")) -> Response:
         """One experience: pose-cell state, place in the map, stored view, energy now, links, Hebbian links of its view."""
         limits.pass_on("experience")
-        report = (await told(submit, ReadExperience(number))).result
+        report = (await ask_engine(submit, ReadExperience(number))).result
         assert isinstance(report, ExperienceReport)
         return json_response(to_json(experience_fields(report)))
 
@@ -176,7 +176,7 @@ def _add_brain(app: FastAPI, latest: Latest[Snapshot], submit: Submit) -> None:
             brain = await asyncio.to_thread(unpacked, raw)
         except ValueError as error:
             raise Malformed([wrong("brain", None, f"this file is {error}")]) from None
-        answer = await told(submit, UseBrain(brain))
+        answer = await ask_engine(submit, UseBrain(brain))
         return json_response(to_json({"accepted": True, "tick": answer.tick}))
 
 
@@ -197,7 +197,7 @@ def _add_commands(app: FastAPI, submit: Submit) -> None:
         """One command. The answer comes when the engine has taken or refused it. A command is carried out wholly or not."""
         document = read_object(await body_of(request))
         limits.pass_on(str(document.get("type")))
-        answer = await told(submit, check(document))
+        answer = await ask_engine(submit, check(document))
         return json_response(to_json({"accepted": True, "tick": answer.tick}))
 
     plain = app.openapi

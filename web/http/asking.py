@@ -27,7 +27,7 @@ ERRORS: dict[int | str, dict[str, Any]] = {status: {"model": Problem} for status
 Submit = Callable[[Command | EngineRequest], "Future[Accepted | Refused]"]
 
 ANSWER_TIMEOUT_S = 3.0
-PAST_TIMEOUT_S = 300.0  # the page is told how far it is, and a newer wish ends it
+PAST_TIMEOUT_S = 300.0  # the page shows how far it is, and a newer request ends it
 TICK_TIMEOUT_S = 0.1  # a step is answered when its ticks are done
 
 
@@ -35,7 +35,7 @@ class NoAnswer(Declined):
     """The engine did not answer in time, or failed at the command; `status` is the HTTP status."""
 
 
-async def told(submit: Submit, command: Command | EngineRequest, timeout_s: float | None = None) -> Accepted:
+async def ask_engine(submit: Submit, command: Command | EngineRequest, timeout_s: float | None = None) -> Accepted:
     """The engine's answer to a command that it has taken. Raises Malformed when it refuses, and NoAnswer."""
     answer = asyncio.wrap_future(submit(command))
     if timeout_s is None:
@@ -55,7 +55,7 @@ async def told(submit: Submit, command: Command | EngineRequest, timeout_s: floa
 
 
 async def world_now(submit: Submit) -> tuple[World, OfficeEdition]:
-    result = (await told(submit, ReadWorld())).result
+    result = (await ask_engine(submit, ReadWorld())).result
     assert isinstance(result, tuple)
     return cast("tuple[World, OfficeEdition]", result)
 

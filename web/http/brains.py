@@ -20,7 +20,7 @@ from disk import State, encode, write_state
 from ratslam_core import RatSlam
 from ratslam_core.brain_file import read_brain
 from sim2d import World, load_world
-from web.http.asking import ERRORS, Body, NoAnswer, Submit, checked_body, json_response, takes, told
+from web.http.asking import ERRORS, Body, NoAnswer, Submit, ask_engine, checked_body, json_response, takes
 from web.http.commands import Malformed, wrong
 from web.http.security import Limits
 from web.http.state import to_json
@@ -78,7 +78,7 @@ class BrainDownload:
 
     async def _make(self) -> bytes:
         try:
-            copy = (await told(self._submit, ReadBrain(), COPY_TIMEOUT_S)).result
+            copy = (await ask_engine(self._submit, ReadBrain(), COPY_TIMEOUT_S)).result
         except Malformed as error:
             raise NoAnswer.of(503, str(error)) from None
         assert isinstance(copy, RatSlam)
@@ -159,7 +159,7 @@ class KeptOffer:
         self._limits, self._answering = Limits(), asyncio.Lock()
         self.done: float | None = None  # the share of a run that has been run again
 
-    def told(self) -> bytes:
+    def to_json(self) -> bytes:
         """The description of the kept brain as JSON, or null."""
         kept = self._offered
         if kept is None:
@@ -188,26 +188,26 @@ class KeptOffer:
             await self._go_on(kept.go_on, request)
             return
         assert kept.read is not None
-        world = (await told(self._submit, ReadFiled(kept.world))).result
+        world = (await ask_engine(self._submit, ReadFiled(kept.world))).result
         try:
             if not isinstance(world, World):
                 world = await asyncio.to_thread(load_world, kept.world)
             brain = await asyncio.to_thread(kept.read)
         except ValueError as error:
             raise Malformed([wrong("use", True, f"this brain cannot be woken up: {error}")]) from None
-        await told(self._submit, UseBrain(brain, world, kept.seed), WAKE_TIMEOUT_S)
+        await ask_engine(self._submit, UseBrain(brain, world, kept.seed), WAKE_TIMEOUT_S)
 
     async def _go_on(self, go_on: Callable[[Callable[[float], object]], GoOn], request: Request) -> None:
         """Run it again to where it was, in a thread; give it up when the page that asked has gone or cancelled."""
         gone = threading.Event()
 
-        def tell(share: float) -> None:
+        def report(share: float) -> None:
             self.done = share
             if gone.is_set():
                 raise GivenUpError
 
         self.done = 0.0
-        running = asyncio.create_task(asyncio.to_thread(go_on, tell))
+        running = asyncio.create_task(asyncio.to_thread(go_on, report))
         try:
             while not (await asyncio.wait({running}, timeout=LOOK_S))[0]:
                 if await request.is_disconnected():
@@ -220,7 +220,7 @@ class KeptOffer:
         finally:
             gone.set()
             self.done = None
-        await told(self._submit, there, WAKE_TIMEOUT_S)
+        await ask_engine(self._submit, there, WAKE_TIMEOUT_S)
 
 
 def add_kept_offer(app: FastAPI, offered: Offered | None, latest: Latest[Snapshot], submit: Submit) -> None:
@@ -229,7 +229,7 @@ def add_kept_offer(app: FastAPI, offered: Offered | None, latest: Latest[Snapsho
     @app.get("/api/brain/kept", tags=["brain"], responses={200: {"model": KeptBrain | None}})
     async def kept() -> Response:
         """The run that was cut off, or the brain that was kept last; null when there is none or somebody has answered."""
-        return json_response(offer.told())
+        return json_response(offer.to_json())
 
     @app.get("/api/brain/kept/done", tags=["brain"], responses={200: {"model": float | None}})
     async def done() -> Response:

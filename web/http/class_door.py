@@ -19,7 +19,7 @@ from pydantic import BaseModel, Field
 from starlette.datastructures import Headers, MutableHeaders
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from web.http.asking import Body, Submit, body_of, json_response, takes, told
+from web.http.asking import Body, Submit, ask_engine, body_of, json_response, takes
 from web.http.commands import CommandAccepted, Declined, Problem, check, read_object
 from web.http.security import (
     FROM_CLASS,
@@ -171,7 +171,7 @@ def add_classroom(app: FastAPI, classroom: Classroom | None, submit: Submit) -> 
         document = read_object(await body_of(request, MAX_VOTE_BYTES))
         limits.pass_on("vote")
         sender = request.client.host if request.client else ""
-        answer = await told(submit, check({**document, "type": "vote", "sender": sender}))
+        answer = await ask_engine(submit, check({**document, "type": "vote", "sender": sender}))
         return json_response(to_json({"accepted": True, "tick": answer.tick}))
 
     @app.get("/api/class", tags=["lessons"], responses={200: {"model": ClassAddress}})

@@ -35,7 +35,7 @@ class Offer(BaseModel):
     refusal: str | None
 
 
-class Wish(BaseModel):
+class ExportRequest(BaseModel):
     """What is wanted of the run: a stretch in simulated seconds, None: from its beginning, up to now. pictures: in MCAP."""
 
     from_s: float | None = None
@@ -55,7 +55,7 @@ class Exports(Protocol):
 
     def offers(self) -> list[Offer]: ...
 
-    async def write(self, to: str, submit: Submit, out: Path, wish: Wish) -> list[Path]:
+    async def write(self, to: str, submit: Submit, out: Path, wanted: ExportRequest) -> list[Path]:
         """Write the run as it is now to `out`, or to several files beside it. ValueError says why it cannot be.
 
         When it is cancelled, it ends what it has begun.
@@ -88,7 +88,7 @@ def add_exports(app: FastAPI, exports: Exports | None, latest: Latest[Snapshot],
         """The run, or from `from_s` to `until_s` of it, in one format; a .zip if that needs several files. One is written at
         a time. `pictures`: of the camera in an mcap; png is exact."""
         limits.pass_on("export")
-        wish = Wish(from_s=from_s, until_s=until_s, pictures=pictures)
+        wanted = ExportRequest(from_s=from_s, until_s=until_s, pictures=pictures)
         if from_s is not None and until_s is not None and until_s <= from_s:
             raise Malformed([wrong("until_s", until_s, f"must be after from_s, {from_s:g}")])
         offer = next((offer for offer in exports.offers() if offer.format == to), None) if exports is not None else None
@@ -102,8 +102,8 @@ def add_exports(app: FastAPI, exports: Exports | None, latest: Latest[Snapshot],
         async with one_at_a_time:
             folder = tempfile.TemporaryDirectory(prefix="ratslam-export-")
             try:
-                out = Path(folder.name) / f"{_name(latest, wish)}.{to}"
-                file = await _written(exports.write(to, submit, out, wish), request, out)
+                out = Path(folder.name) / f"{_name(latest, wanted)}.{to}"
+                file = await _written(exports.write(to, submit, out, wanted), request, out)
             except BaseException as error:
                 folder.cleanup()
                 if isinstance(error, ValueError | OSError) and not isinstance(error, Malformed):
@@ -138,11 +138,11 @@ def _zipped(files: list[Path], out: Path) -> Path:
     return out
 
 
-def _name(latest: Latest[Snapshot], wish: Wish) -> str:
+def _name(latest: Latest[Snapshot], wanted: ExportRequest) -> str:
     _, snapshot = latest.get()
     if snapshot is None:
         return "run"
     played = "recording" if snapshot.world is None else snapshot.world.name
-    from_s, until_s = wish.from_s or 0.0, snapshot.time_s if wish.until_s is None else wish.until_s
-    stretch = "" if wish.whole else f"-{from_s:g}s-to-{until_s:g}s"
+    from_s, until_s = wanted.from_s or 0.0, snapshot.time_s if wanted.until_s is None else wanted.until_s
+    stretch = "" if wanted.whole else f"-{from_s:g}s-to-{until_s:g}s"
     return f"run-{re.sub(r'[^A-Za-z0-9]+', '-', played)}-seed{snapshot.seed}{stretch}"

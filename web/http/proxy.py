@@ -53,8 +53,8 @@ class ViewerLike(Protocol):
     def follow(self, client_id: int, on: bool) -> None: ...
     def replay(self, event: int) -> None: ...
     def press(
-        self, client_id: int, at: tuple[float, float], inspecting: bool, tell: Callable[[str | None], None]
-    ) -> None: ...  # calls `tell` once, from a thread of its own: None, or why nothing came of the click
+        self, client_id: int, at: tuple[float, float], inspecting: bool, on_answer: Callable[[str | None], None]
+    ) -> None: ...  # calls `on_answer` once, from a thread of its own: None, or why nothing came of the click
     def turned(self, client_id: int) -> Camera | None: ...  # where somebody has turned this camera by hand
 
 

@@ -17,7 +17,7 @@ from fastapi import FastAPI, Query, Request
 from fastapi.responses import Response
 from pydantic import BaseModel
 
-from web.http.asking import ERRORS, Submit, json_response, told
+from web.http.asking import ERRORS, Submit, ask_engine, json_response
 from web.http.commands import Declined, Malformed, wrong
 from web.http.security import MAX_RECORDING_BYTES, Limits
 from web.http.state import to_json
@@ -133,7 +133,7 @@ class SentRecordings:
         except ValueError as error:
             reason = str(error).replace(f"{path.parent}{os.sep}", "")
             raise Malformed([wrong("recording", path.name, reason)]) from None
-        view = (await told(self._submit, PlayRecording(player), PLAY_TIMEOUT_S)).result
+        view = (await ask_engine(self._submit, PlayRecording(player), PLAY_TIMEOUT_S)).result
         assert isinstance(view, RecordingView)
         return view
 

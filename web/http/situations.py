@@ -9,7 +9,7 @@ from fastapi import FastAPI, Request
 from fastapi.responses import Response
 from pydantic import BaseModel, Field, ValidationError
 
-from web.http.asking import ERRORS, Body, Submit, body_of, checked_body, json_response, takes, told
+from web.http.asking import ERRORS, Body, Submit, ask_engine, body_of, checked_body, json_response, takes
 from web.http.commands import Malformed, wrong
 from web.http.proxy import Cameras
 from web.http.security import MAX_SITUATION_BYTES, Limits
@@ -89,7 +89,7 @@ def add_situations(app: FastAPI, situations: Situations | None, cameras: Cameras
         asked = await checked_body(request, AskMoment, limits)
         look = Look(plate=asked.plate, tab=asked.tab, camera=_camera_of(cameras, asked.page))
         async with one_at_a_time:
-            spec = (await told(submit, ReadSituation(), READ_TIMEOUT_S)).result
+            spec = (await ask_engine(submit, ReadSituation(), READ_TIMEOUT_S)).result
             try:
                 made = await asyncio.to_thread(situations.made, spec, look)
             except OSError as error:
@@ -110,7 +110,7 @@ def add_situations(app: FastAPI, situations: Situations | None, cameras: Cameras
                 situation = await asyncio.to_thread(situations.read, text)
             except ValueError as error:
                 raise Malformed([wrong("text", text[:40], str(error))]) from None
-            await told(submit, OpenSituation(situation), OPEN_TIMEOUT_S)
+            await ask_engine(submit, OpenSituation(situation), OPEN_TIMEOUT_S)
         opened = Opened(tick=situation.tick, state_hash=situation.state_hash, look=situation.look)
         return json_response(to_json(opened.model_dump()))
 

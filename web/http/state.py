@@ -33,7 +33,7 @@ from web.messages import (
     ViewReport,
     WhyReport,
 )
-from web.messages.told import Facts, goal_told, robot_told
+from web.messages.robot_status import Facts, goal_status, robot_status
 
 SEES = "local_view.enabled"
 WORTH_M = 0.05  # nothing would be seen of a smaller correction
@@ -160,7 +160,7 @@ def page_fields(snapshot: Snapshot) -> dict[str, Any]:
     return {
         "run": snapshot.run,
         "doing": snapshot.doing,
-        "told": _told(snapshot),
+        "status": _status(snapshot),
         "fault": snapshot.fault,
         "real_time_factor": snapshot.real_time_factor,
         "title": title(snapshot),
@@ -177,7 +177,7 @@ def page_fields(snapshot: Snapshot) -> dict[str, Any]:
     }
 
 
-def _told(snapshot: Snapshot) -> dict[str, Any]:
+def _status(snapshot: Snapshot) -> dict[str, Any]:
     """The robot's sentence and the goal's."""
     goal, time, situation, belief = snapshot.goal, snapshot.time, snapshot.situation, snapshot.belief
     facts = Facts(
@@ -187,7 +187,7 @@ def _told(snapshot: Snapshot) -> dict[str, Any]:
         over=snapshot.recording is not None and snapshot.recording.over,
         played_ahead=situation is not None and situation.state == "playing",
     )  # fmt: skip
-    return {"robot": asdict(robot_told(facts)), "goal": None if goal is None else asdict(goal_told(goal))}
+    return {"robot": asdict(robot_status(facts)), "goal": None if goal is None else asdict(goal_status(goal))}
 
 
 def title(snapshot: Snapshot) -> str:

@@ -18,7 +18,7 @@ import numpy as np
 from pydantic import ValidationError
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
-from web.http.asking import Submit, told
+from web.http.asking import Submit, ask_engine
 from web.http.commands import Declined, Malformed, check, read_object, wrong
 from web.http.proxy import VIEWS, Cameras, close_quietly, end_all
 from web.http.security import Limits, must_look
@@ -215,7 +215,7 @@ class Stream:
 
     async def _command(self, client: Client, command: Command, identity: object) -> None:
         try:
-            answer = await told(self._submit, command)
+            answer = await ask_engine(self._submit, command)
         except Declined as error:
             await client.send(_answer(identity, error))
             return

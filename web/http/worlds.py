@@ -22,7 +22,7 @@ from sim2d import World, WorldError, WorldText, own_worlds, world_names, world_t
 from sim2d.importers import import_world
 from sim2d.importers.plan import empty_room
 from sim2d.world.world_file import holds
-from web.http.asking import ERRORS, Body, Name, Submit, Title, checked_body, json_response, takes, told, world_now
+from web.http.asking import ERRORS, Body, Name, Submit, Title, ask_engine, checked_body, json_response, takes, world_now
 from web.http.commands import Declined, Malformed, Problem, wrong
 from web.http.security import MAX_PLAN_BYTES, PLAN_PATH, Limits
 from web.http.state import office_fields, to_json
@@ -118,11 +118,11 @@ def add_worlds(app: FastAPI, latest: Latest[Snapshot], submit: Submit) -> None:
               responses={200: {"model": Opened}, **ERRORS})  # fmt: skip
     async def open_files(request: Request) -> Response:
         """Begin anew in a world or plan. When that is not possible, the session stays as it was."""
-        wish = await checked_body(request, OpenFiles, limits, MAX_PLAN_BYTES)  # one that stalls holds up no other
+        body = await checked_body(request, OpenFiles, limits, MAX_PLAN_BYTES)  # one that stalls holds up no other
         if importing.locked():
             raise Declined.of(429, "another plan is being imported; wait until it is there")
         async with importing:
-            return json_response(await _open(wish, latest, submit))
+            return json_response(await _open(body, latest, submit))
 
     @app.post("/api/worlds/new", tags=["worlds"], openapi_extra=takes(NewWorld),
               responses={200: {"model": Opened}, **ERRORS})  # fmt: skip
@@ -138,14 +138,14 @@ async def _read(submit: Submit, text: WorldText) -> bytes:
     return head[:-1] + b',"world":' + written.encode() + b"}"
 
 
-async def _open(wish: OpenFiles, latest: Latest[Snapshot], submit: Submit) -> bytes:
-    files = {_plain(file.name): _bytes(file) for file in wish.files}
+async def _open(body: OpenFiles, latest: Latest[Snapshot], submit: Submit) -> bytes:
+    files = {_plain(file.name): _bytes(file) for file in body.files}
     _, snapshot = latest.get()
     office = None if snapshot is None or snapshot.recording is not None else snapshot.world
     radius = None if office is None else office.robot_radius_m
     said: list[str] = []
     try:
-        world = await asyncio.to_thread(import_world, _main(files), files, wish.scale_m, wish.seed, radius, said.append)
+        world = await asyncio.to_thread(import_world, _main(files), files, body.scale_m, body.seed, radius, said.append)
     except WorldError as error:
         raise Malformed([wrong("files", list(files), str(error))]) from None
     return await _begin(submit, world, True, said)
@@ -176,12 +176,12 @@ def _main(files: dict[str, bytes]) -> str:
 
 
 async def _new(request: Request, submit: Submit, limits: Limits) -> bytes:
-    wish = await checked_body(request, NewWorld, limits)
-    _not_taken(wish.name)
+    body = await checked_body(request, NewWorld, limits)
+    _not_taken(body.name)
     try:
-        world = empty_room(wish.name, wish.title or wish.name, wish.width_m, wish.depth_m)
+        world = empty_room(body.name, body.title or body.name, body.width_m, body.depth_m)
     except ValueError as error:
-        raise Malformed([wrong("width_m, depth_m", [wish.width_m, wish.depth_m], str(error))]) from None
+        raise Malformed([wrong("width_m, depth_m", [body.width_m, body.depth_m], str(error))]) from None
     return await _begin(submit, world, False, [])
 
 
@@ -195,7 +195,7 @@ def _not_taken(name: str) -> None:
 
 
 async def _begin(submit: Submit, world: World, filed: bool, said: list[str]) -> bytes:
-    name = (await told(submit, OpenWorld(world, filed), OPEN_TIMEOUT_S)).result
+    name = (await ask_engine(submit, OpenWorld(world, filed), OPEN_TIMEOUT_S)).result
     x0, y0, x1, y1 = world.bounds
     size = [round(x1 - x0, 3), round(y1 - y0, 3)]
     about = {"name": name, "title": world.title, "walls": len(world.walls), "starts": len(world.starts)}
@@ -229,25 +229,25 @@ def _add_saved_worlds(app: FastAPI, submit: Submit, limits: Limits) -> None:
 
 
 async def _save(request: Request, submit: Submit, limits: Limits) -> bytes:
-    wish = await checked_body(request, SaveWorld, limits)
-    _free(wish.name)
+    body = await checked_body(request, SaveWorld, limits)
+    _free(body.name)
     was, _ = await world_now(submit)
     yours = dict(own_worlds.names())
-    if wish.name in yours and not wish.replace:
-        await _is_ours(wish.name, was.name, submit)
-    if wish.rename and (was.name == wish.name or was.name not in yours):
+    if body.name in yours and not body.replace:
+        await _is_ours(body.name, was.name, submit)
+    if body.rename and (was.name == body.name or was.name not in yours):
         raise Malformed(
             [wrong("rename", True, f"{was.name!r} is no other world that you have saved; leave rename away")]
         )
-    title = wish.title or (was.title if wish.name == was.name else wish.name)
-    named = replace(was, name=wish.name, title=title)
+    title = body.title or (was.title if body.name == was.name else body.name)
+    named = replace(was, name=body.name, title=title)
     text = await asyncio.to_thread(world_to_json, named)
-    path = await _done(wish.name, lambda: own_worlds.save(wish.name, text))
-    await told(submit, WorldSaved(was, named))
-    if wish.rename:
+    path = await _done(body.name, lambda: own_worlds.save(body.name, text))
+    await ask_engine(submit, WorldSaved(was, named))
+    if body.rename:
         await _done(was.name, lambda: own_worlds.delete(was.name))
-        await told(submit, WorldDeleted(was.name))
-    return to_json({"name": wish.name, "file": str(path)})
+        await ask_engine(submit, WorldDeleted(was.name))
+    return to_json({"name": body.name, "file": str(path)})
 
 
 def _free(name: str) -> None:
@@ -260,7 +260,7 @@ async def _is_ours(name: str, now: str, submit: Submit) -> None:
     if name != now:
         reason = f"there is a world {name!r} already; replace it or choose another name"
         raise Malformed([wrong("replace", False, reason)])
-    filed = (await told(submit, ReadFiled(name))).result
+    filed = (await ask_engine(submit, ReadFiled(name))).result
     if not isinstance(filed, World) or not await asyncio.to_thread(holds, own_worlds.folder() / f"{name}.json", filed):
         reason = (
             f"somebody else has saved {name!r} since it was read here; replace what is there or choose another name"
@@ -273,14 +273,14 @@ async def _delete(request: Request, submit: Submit, limits: Limits) -> bytes:
     if name in dict(world_names()):
         raise Malformed([wrong("name", name, f"{name} comes with the program and stays")])
     kept = await _done(name, lambda: own_worlds.delete(name))
-    await told(submit, WorldDeleted(name))
+    await ask_engine(submit, WorldDeleted(name))
     return to_json({"name": name, "file": str(kept)})
 
 
 async def _restore(request: Request, submit: Submit, limits: Limits) -> bytes:
     name = (await checked_body(request, NamedWorld, limits)).name
     title = await _done(name, lambda: own_worlds.restore(name))
-    await told(submit, WorldRestored(name, title))
+    await ask_engine(submit, WorldRestored(name, title))
     return to_json({"name": name, "title": title})
 
 

@@ -6,7 +6,7 @@ import math
 from typing import Any
 
 from web.messages import Belief, Goal, PoseCellLayer, Snap, Snapshot
-from web.messages.told import goal_told, odds_words, share_words
+from web.messages.robot_status import goal_status, odds_words, share_words
 from web.panel.part import Content, clock, counted, number, often, percent, table, thousands
 
 LOG = 8
@@ -46,7 +46,7 @@ def _counts(snapshot: Snapshot) -> dict[str, Any]:
 
 
 def _belief(snapshot: Snapshot) -> dict[str, Any]:
-    """What the robot thinks of its place: how far off it may be, and where else it may be."""
+    """The uncertainty of the pose estimate, and the hypotheses beside it."""
     belief, title = snapshot.belief, "How sure it is of its place"
     if belief is None:
         return table(title, [], "it has no experience map")
@@ -100,7 +100,7 @@ def _goal(goal: Goal | None) -> dict[str, Any]:
         return table("Goal", [], "none: click on the map and the robot goes there")
     others = len(goal.places_xy) - 1
     rows = [
-        ("state", goal_told(goal).words),
+        ("state", goal_status(goal).words),
         ("experience", f"#{goal.experience}" + (f" or {others} others" if others > 0 else "")),
     ]
     rows += [("time to get there", number(goal.eta_s, "s", 0)), ("way to go", number(goal.remaining_m, "m"))]

@@ -34,7 +34,7 @@ _JPEG = (cv2.IMWRITE_JPEG_QUALITY, 93, cv2.IMWRITE_JPEG_SAMPLING_FACTOR, cv2.IMW
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Sight:
+class PanelInput:
     """Everything that the panel is made from at one moment."""
 
     snapshot: Snapshot
@@ -47,7 +47,7 @@ class Part:
     tab: str
     name: str
     hz: float
-    of: Callable[[Sight], tuple[Any, ...]]  # what it is made from; made again when one is another object
+    of: Callable[[PanelInput], tuple[Any, ...]]  # what it is made from; made again when one is another object
     make: Callable[..., Content]
 
 
@@ -99,8 +99,8 @@ class Panel:
         """Keep what the newest snapshot alone does not tell. To be called for every snapshot that is sent."""
         self._recent.remember(snapshot)
 
-    def sight(self, snapshot: Snapshot) -> Sight:
-        return Sight(snapshot, self._recent.numbers, self._switches.on)
+    def input_of(self, snapshot: Snapshot) -> PanelInput:
+        return PanelInput(snapshot, self._recent.numbers, self._switches.on)
 
     def made(self, part: Part, of: tuple[Any, ...]) -> Made:
         known = self._made.get(part.name)
@@ -119,21 +119,21 @@ class PanelReader:
     def __init__(self, panel: Panel) -> None:
         self.tabs: Collection[str] = ()
         self._panel = panel
-        self._told: dict[str, Made] = {}
+        self._sent: dict[str, Made] = {}
         self._last: Snapshot | None = None
         self._news: list[str | bytes] = []
-        self._throttles = {part: Throttle(part.hz, self._teller(part)) for part in PARTS}
+        self._throttles = {part: Throttle(part.hz, self._sender(part)) for part in PARTS}
 
     def news(self, snapshot: Snapshot, now_s: float) -> list[str | bytes]:
         """The messages that are due: text, or bytes where there are arrays."""
-        self._news, sight = [], self._panel.sight(snapshot)
+        self._news, shown = [], self._panel.input_of(snapshot)
         if snapshot.sought(self._last):
             for throttle in self._throttles.values():
                 throttle.hurry()
         self._last = snapshot
         for part, throttle in self._throttles.items():
             if part.tab in self.tabs:
-                throttle.offer(now_s, *part.of(sight))
+                throttle.offer(now_s, *part.of(shown))
         return self._news
 
     @property
@@ -142,15 +142,15 @@ class PanelReader:
         waiting = any(throttle.waiting for part, throttle in self._throttles.items() if part.tab in self.tabs)
         return SOON_S if waiting else None
 
-    def _teller(self, part: Part) -> Callable[..., None]:
-        def tell(*of: Any) -> None:
-            self._tell(part, self._panel.made(part, of))
+    def _sender(self, part: Part) -> Callable[..., None]:
+        def send(*of: Any) -> None:
+            self._send(part, self._panel.made(part, of))
 
-        return tell
+        return send
 
-    def _tell(self, part: Part, made: Made) -> None:
-        before = self._told.get(part.name)
-        self._told[part.name] = made
+    def _send(self, part: Part, made: Made) -> None:
+        before = self._sent.get(part.name)
+        self._sent[part.name] = made
         arrays = made.arrays
         if before is not None:
             arrays = {name: array for name, array in arrays.items() if array != before.arrays.get(name)}

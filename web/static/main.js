@@ -29,7 +29,7 @@ if (watching) onlyLook(page);
 const link = new Connection(page);
 const header = new Header();
 const timeline = new Timeline(link);
-const drive = new HandDrive((command) => source.lacks === null && link.tell(command));
+const drive = new HandDrive((command) => source.lacks === null && link.send(command));
 const keys = new Keys({ drive: (name, down) => drive.key(name, down), act, allUp: () => drive.allUp() });
 const viewer = new Viewer(link, keys);
 const aids = new Aids(link, viewer, (wish, done) => command(wish, done));
@@ -106,8 +106,8 @@ link.on("waking", (/** @type {{ doing: string }} */ { doing }) => {
 link.on("events", (/** @type {{ fresh: boolean, events: TimelineEvent[] }} */ detail) => {
   timeline.add(detail);
   if (!detail.fresh) {
-    speaker.hear(detail.events);
-    first.hear(detail.events);
+    speaker.onEvents(detail.events);
+    first.onEvents(detail.events);
   }
   const told = detail.fresh || first.searches ? ["warning"] : ["warning", "unreachable"];
   for (const event of detail.events.slice(-20))
@@ -126,7 +126,7 @@ link.addEventListener("lost", () => {
   lostToast ??= toast("Connection lost. Trying again.", { bad: true, stays: true });
 });
 link.addEventListener("hello", () => {
-  link.tell({ type: "theme", name: theme.name });
+  link.send({ type: "theme", name: theme.name });
   if (!lostToast) return;
   lostToast.remove();
   lostToast = null;

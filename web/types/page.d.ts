@@ -25,7 +25,7 @@ type Kind<T> = {
   fields: Field[];
 };
 type Place = { list: ThingList; number: number };
-type Tell = (text: string, bad: boolean) => void;
+type SetStatus = (text: string, bad: boolean) => void;
 
 type ToolName = "select" | "wall" | "door" | "lamp" | "box" | "person" | "zone" | "start" | "place" | "delete";
 type WallLooks = { kind: Wall["kind"]; height: number };
@@ -148,13 +148,13 @@ type Moving = { walkers: Record<string, [number, number, number]>; boxes: string
 type Walk = { at: number; of: number; title: string; words: string };
 type OfficeFields = { edition: number; undo: string | null; redo: string | null; saved: boolean };
 type RecordingFields = { name: string; format: string; moments: number; seconds: number; has: string[]; over: boolean };
-// web/messages/told.py
+// web/messages/robot_status.py
 type Chip = { icon: string; tone: string; words: string };
 type GoalChip = { icon: string; words: string; short: string; metres: string; seconds: string };
 type PageFields = {
   run: number;
   doing: string;
-  told: { robot: Chip; goal: GoalChip | null };
+  status: { robot: Chip; goal: GoalChip | null };
   fault: string | null;
   real_time_factor: number;
   title: string;
@@ -251,7 +251,7 @@ type SideFields = {
 type TimelineEvent = { number: number; time_s: number; kind: string; text: string; line: string; count: number; since_s: number };
 type Wrong = { field: string | null; value: unknown; reason: string };
 // `wrong`: sentences, where something was.
-type Told = { [key: string]: any; wrong?: string; field?: string | null };
+type Reply = { [key: string]: any; wrong?: string; field?: string | null };
 type Answer = { accepted: boolean; detail: Wrong[]; id?: number; tick?: number };
 type KeptOffer = { world: string; title: string; experiences: number; time_s: number; kept_at: number; run: string | null };
 type EngineName = "paper" | "ours";

@@ -54,7 +54,7 @@ class Cameras:
 
         async def moved(camera: viser.CameraHandle) -> None:
             nonlocal aspect
-            self._heard(client.client_id, camera)
+            self._on_camera(client.client_id, camera)
             if abs(_aspect_of(camera) / aspect - 1) > RESHAPED:
                 before, aspect = aspect, _aspect_of(camera)
                 self._post(partial(self._reshaped, client, before, aspect))
@@ -94,7 +94,7 @@ class Cameras:
         return None if _near(camera, end.position, end.look_at) else camera
 
     def standing(self, client_id: int) -> Camera | None:
-        """Where a camera is, as its browser told last; None for one that is not there."""
+        """Where a camera is, as its browser last reported; None for one that is not there."""
         client = self._server.get_clients().get(client_id)
         return None if client is None else _standing(client.camera)
 
@@ -143,16 +143,16 @@ class Cameras:
             if camera is not None:
                 _point(clients[client_id], camera)
 
-    def _heard(self, client_id: int, camera: viser.CameraHandle) -> None:
+    def _on_camera(self, client_id: int, camera: viser.CameraHandle) -> None:
         """From viser's thread."""
         position, look_at = camera.position.copy(), camera.look_at.copy()
 
-        def heard() -> None:
+        def moved() -> None:
             if client_id in self._followers and client_id not in self._flights:
-                self._followers[client_id].heard(position, look_at, time.monotonic())
+                self._followers[client_id].on_camera(position, look_at, time.monotonic())
 
         if client_id in self._followers:
-            self._post(heard)
+            self._post(moved)
 
     def _set_back(self, client_id: int, camera: viser.CameraHandle) -> bool:
         """Whether viser's client has gone to its initial camera by itself, or sees as widely as no hand can make it: viser does
@@ -228,7 +228,7 @@ class Follower:
         self.offset = self.offset * (_counted(before) / _counted(aspect))
         return Camera(self.at + self.offset, self.at, self.fov_rad)
 
-    def heard(self, position: Point, look_at: Point, now_s: float) -> None:
+    def on_camera(self, position: Point, look_at: Point, now_s: float) -> None:
         """The browser reports its camera. If it is turned or nearer than we put it, that was the hand, which is obeyed."""
         offset = position - look_at
         if np.linalg.norm(offset - self.offset) > MOVED * np.linalg.norm(self.offset):

@@ -33,14 +33,14 @@ OTHER_BRAIN = "No goal set: this is the other brain's map; the robot goes by the
 
 @dataclass(frozen=True)
 class Click:
-    """A ray, and who is told once what came of it: None when it was carried out, else why not."""
+    """A ray; `on_answer` is called once with the outcome: None when it was carried out, else why not."""
 
     origin: tuple[float, float, float]
     direction: tuple[float, float, float]
-    tell: Callable[[str | None], None]
+    on_answer: Callable[[str | None], None]
 
     def answered(self, answer: Answer, title: str) -> None:
-        self.tell(f"{title}: {answer.reason}" if isinstance(answer, Refused) else None)
+        self.on_answer(f"{title}: {answer.reason}" if isinstance(answer, Refused) else None)
 
 
 @dataclass(frozen=True)
@@ -75,7 +75,7 @@ class Pointer:
         on_plate = point_on_plane(np.array(click.origin), np.array(click.direction), plate.origin, NODE_Z)
         place = None if on_plate is None else plate.map_place(on_plate)
         if place is None:
-            click.tell(BESIDE_MAP if on_plate is not None and on_sheet(on_plate) else NOTHING_THERE)
+            click.on_answer(BESIDE_MAP if on_plate is not None and on_sheet(on_plate) else NOTHING_THERE)
             return
         self._ask(place, click, plate, now_s)
 
@@ -87,7 +87,7 @@ class Pointer:
         """The place of the map that is known by this name becomes the goal."""
         known = next((place.map_xy for place in places if place.name == name), None)
         if known is None:
-            click.tell(f"No goal set: the map does not know the {name}: the robot has not been there")
+            click.on_answer(f"No goal set: the map does not know the {name}: the robot has not been there")
             return
         self._ask(known, click, plate, now_s)
 

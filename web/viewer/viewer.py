@@ -99,16 +99,16 @@ class Viewer:
         self._inbox.put(lambda: self._replay.find(self._snapshot, event, self._now_s))
 
     def press(
-        self, client_id: int, at: tuple[float, float], inspecting: bool, tell: Callable[[str | None], None]
+        self, client_id: int, at: tuple[float, float], inspecting: bool, on_answer: Callable[[str | None], None]
     ) -> None:
-        """Somebody has clicked on what this browser's camera shows: `at` as in `ray_through`. tell: as in `Click`."""
+        """Somebody has clicked on what this browser's camera shows: `at` as in `ray_through`. on_answer: as in `Click`."""
 
         def pressed() -> None:
             camera = self._cameras.standing(client_id)
             if camera is None:
-                tell(NOT_THERE)
+                on_answer(NOT_THERE)
             else:
-                self._click(Click(*ray_through(camera, at), tell), inspecting)
+                self._click(Click(*ray_through(camera, at), on_answer), inspecting)
 
         self._inbox.put(pressed)
 
@@ -187,14 +187,14 @@ class Viewer:
             self._send(predicted, lambda answer: click.answered(answer, "Nothing predicted"))
             return
         if self._beside.holds(click.origin, click.direction):
-            click.tell(OTHER_BRAIN)
+            click.on_answer(OTHER_BRAIN)
             return
         column = self._scenery.cells.column_at(np.array(click.origin), np.array(click.direction))
         if column is not None:
             self._pointer.inspect(click, x=column[0], y=column[1])
         elif not inspecting and (closure := self._pointer.closure_at(click, self._scenery.map)) is not None:
             self._replay.start(closure, self._now_s)
-            click.tell(None)
+            click.on_answer(None)
         elif inspecting or self._switches.is_on("click_inspects"):
             self._pointer.inspect(click, experience=self._pointer.experience_at(click, self._scenery.map))
         else:

@@ -1,6 +1,6 @@
 "use strict";
 // A box beside what was pressed: what a trial was, and the command that opens it.
-const told = JSON.parse(document.getElementById("told").textContent);
+const data = JSON.parse(document.getElementById("data").textContent);
 const box = document.getElementById("box");
 let opener = null;
 
@@ -46,16 +46,16 @@ function fill(facts, extra) {
 }
 
 function trial(id) {
-  const facts = told.trials[id];
+  const facts = data.trials[id];
   fill(facts, [element("div", `Decided: ${facts.moment}`), commandLine(facts.command)]);
 }
 
 function cell(number) {
-  const facts = told.cells[number];
+  const facts = data.cells[number];
   const list = element("ul", "", "plain");
   for (const id of facts.trials) {
     const item = element("li");
-    item.append(commandLine(told.trials[id].command));
+    item.append(commandLine(data.trials[id].command));
     list.append(item);
   }
   fill(facts, [list]);

@@ -77,7 +77,7 @@ class Topic:
 
     @property
     def up(self) -> NDArray[np.float64]:
-        """What is up for the sensor: what it feels on the whole is the ground that carries it."""
+        """What is up for the sensor: its mean acceleration, the reaction of the ground."""
         size = float(np.linalg.norm(self.accelerated))
         return self.accelerated / size if size > self.count else _UP
 

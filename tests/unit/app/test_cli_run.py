@@ -75,7 +75,7 @@ class CompilingDouble:
 
 
 class EngineDouble:
-    submit, stillborn = "submit", None
+    submit, startup_error = "submit", None
 
     def __init__(self, doubles: Doubles, world: World, seed: int, config: Config, **options: object) -> None:
         self._doubles, self.latest = doubles, doubles.latest

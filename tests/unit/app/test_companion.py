@@ -78,7 +78,7 @@ def test_with_the_same_parameters_it_is_the_first_again_whatever_is_told_to_both
     assert companion is not None
     assert encode(companion.brain).digest() == encode(session.brain).digest()
     assert encode(companion.evaluation).digest() == encode(session.evaluation).digest()
-    assert (companion.parting.packet, companion.parting.view, companion.parting.link) == (None, None, None)
+    assert (companion.divergence.packet, companion.divergence.view, companion.divergence.link) == (None, None, None)
     assert companion.counterpart == list(range(len(session.brain.experience_map)))
 
 
@@ -107,7 +107,7 @@ def test_a_copy_differs_from_now_on() -> None:
     assert not companion.brain.params.local_view.enabled
     assert session.brain.params.local_view.enabled
     run_for(session, 50)
-    view = companion.parting.view
+    view = companion.divergence.view
     assert view is not None
     assert (view[0], view[3]) == (151, -1)
 
@@ -185,5 +185,5 @@ def test_beside_a_recording(truth: bool) -> None:
     assert alone.state_hash() == session.state_hash()
     session.begin_companion("with", "without", BLIND, False)
     run_for(session, 19)
-    assert session.companion.parting.view is not None
+    assert session.companion.divergence.view is not None
     assert session.source.over

@@ -24,7 +24,7 @@ from app.config import Config
 from app.engine_thread import EngineThread
 from app.headless import run_headless
 from app.startup.compiling import Compiling
-from app.startup.compiling import Waking
+from app.startup.compiling import EngineStarter
 from sim2d import load_world
 from web import messages as m
 
@@ -34,8 +34,8 @@ def used():
     return {(kernel.py_func.__qualname__, str(types)) for kernel in kernels for types in kernel.signatures}
 
 engine, opened = EngineThread(load_world(), 5, Config(), speed=0.0), []
-waking = Waking(engine, Compiling())
-waking.start()
+starter = EngineStarter(engine, Compiling())
+starter.start()
 version, _ = engine.latest.wait(0, 600.0)
 before = used()
 sys.addaudithook(lambda event, args: opened.append(args[0]) if event == "open" and ".nb" in str(args[0])[-4:] else None)
@@ -44,7 +44,7 @@ for order in (m.Kidnap(type="kidnap"), m.SetGoal(type="set_goal", x=0.0, y=0.0),
 run_headless(load_world(), 5, 1.0)
 while version < 5:  # and what the page is shown
     version, _ = engine.latest.wait(version, 60.0)
-waking.stop()
+starter.stop()
 print(len(before) > 40, sorted(used() - before), opened)
 """
 

@@ -243,9 +243,9 @@ def test_an_engine_that_cannot_begin_says_so_and_answers() -> None:
     engine.start()
     answer = early.result(PATIENCE_S)
     assert isinstance(answer, m.Refused)
-    assert engine.stillborn is not None
-    assert "the robot cannot start at home" in engine.stillborn
-    assert answer.reason == f"the engine could not begin: {engine.stillborn}"
+    assert engine.startup_error is not None
+    assert "the robot cannot start at home" in engine.startup_error
+    assert answer.reason == f"the engine could not begin: {engine.startup_error}"
     assert do(engine, m.ReadBrain()) == m.Refused("type", "ReadBrain", answer.reason)
     engine.stop()
 

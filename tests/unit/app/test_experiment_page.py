@@ -106,7 +106,7 @@ def test_what_people_write_is_escaped(page):
 
 def test_every_trial_is_listed_with_its_command(written, page):
     _, stored, _ = written
-    script = re.search(r'<script type="application/json" id="told">(.*?)</script>', page.source, re.DOTALL)
+    script = re.search(r'<script type="application/json" id="data">(.*?)</script>', page.source, re.DOTALL)
     told, good = json.loads(script[1]), sorted(trial.id for trial in stored if not trial.error)
     assert sorted(page.having("data-trial", "button")) == sorted(told["trials"]) == good
     for trial in stored[:-1]:

@@ -63,7 +63,7 @@ def test_every_trial_runs_once_and_what_is_kept_does_not_run_again(client: Any, 
     for asked, new in ((trials[:40], trials[:40]), ([*trials, *trials], trials[40:])):
         told = list[str]()
         tell = lambda ended, told=told: told.extend(trial.id for trial, _ in ended)  # noqa: E731
-        run_trials(asked, store, client, run=fake_trials.run, expected_s=0.1, tell=tell)
+        run_trials(asked, store, client, run=fake_trials.run, expected_s=0.1, on_ended=tell)
         assert sorted(told) == sorted(trial.id for trial in new)
     assert_all_right(store, trials)
 
@@ -74,7 +74,7 @@ def test_a_trial_that_fails_or_kills_its_worker_costs_the_others_nothing(client:
     mixed = [*good[:20], *bad, *good[20:]]
     run_trials(
         mixed, store, client, run=fake_trials.run_badly, expected_s=0.1,
-        tell=lambda some: ended.update({trial.id: outcome for trial, outcome in some}),
+        on_ended=lambda some: ended.update({trial.id: outcome for trial, outcome in some}),
     )  # fmt: skip
     assert pending(mixed, store) == bad
     deadly, failing = (ended[trial.id] for trial in bad)
@@ -188,7 +188,7 @@ def test_a_cluster_that_dies_is_told_of_and_what_had_come_is_kept(store: Store, 
                 pytest.raises(ValueError, match="the cluster has gone; the same command goes on"),
                 connected_to(address, None) as client,
             ):
-                run_trials(trials, store, client, run=fake_trials.run, expected_s=0.1, tell=kill)
+                run_trials(trials, store, client, run=fake_trials.run, expected_s=0.1, on_ended=kill)
         finally:
             kill()
     kept = len(trials) - len(pending(trials, store))

@@ -18,7 +18,7 @@ from app.export.export import NOT_KEPT, PageExports
 from app.export.text_formats import g2o_text
 from app.session_snapshot import take_session
 from ratslam_live import command_of
-from web.http.export import Wish
+from web.http.export import ExportRequest
 from web.messages import Accepted, ReadSession, Refused
 
 from .exported import AgainAndAgain
@@ -96,7 +96,7 @@ def test_what_can_be_had_depends_on_whether_the_run_keeps_itself() -> None:
 
 def test_the_map_now_comes_from_a_copy(tmp_path: Path) -> None:
     def write(to: str) -> list[Path]:
-        return asyncio.run(PageExports().write(to, submit, tmp_path / f"run.{to}", Wish()))
+        return asyncio.run(PageExports().write(to, submit, tmp_path / f"run.{to}", ExportRequest()))
 
     (graph,), (poses,), pictures = write("graphml"), write("g2o"), write("png")
     assert len(nx.read_graphml(graph)) == len(SESSION.brain.experience_map)
@@ -122,16 +122,16 @@ def will(script: Path, do: str) -> None:
 def test_a_kept_run_is_played_again_by_a_process_of_its_own(program: Path, tmp_path: Path) -> None:
     exports, out = PageExports(lambda: tmp_path / "kept run"), tmp_path / "run.csv"
     will(program, 'echo "$@" > ' + f'"{out}"')
-    assert asyncio.run(exports.write("csv", submit, out, Wish())) == [out]
+    assert asyncio.run(exports.write("csv", submit, out, ExportRequest())) == [out]
     words = [*command_of("app")[1:], "export", str(tmp_path / "kept run"), "--to", "csv", "--out", str(out)]
     assert out.read_text() == " ".join([*words, "--say-share --pictures png\n"])
     will(program, 'echo done 0.42; echo "$@" > ' + f'"{out}"')
-    asyncio.run(exports.write("csv", submit, out, Wish(from_s=1.5, until_s=20.0, pictures="jpeg")))
+    asyncio.run(exports.write("csv", submit, out, ExportRequest(from_s=1.5, until_s=20.0, pictures="jpeg")))
     assert out.read_text().endswith("--say-share --pictures jpeg --from 1.5 --until 20.0\n")
     assert exports.done == 0.42
     will(program, "echo ratslam: the disk is full >&2; exit 2")
     with pytest.raises(ValueError, match=r"^the disk is full$"):
-        asyncio.run(exports.write("csv", submit, out, Wish()))
+        asyncio.run(exports.write("csv", submit, out, ExportRequest()))
 
 
 def test_what_nobody_waits_for_is_ended(program: Path, tmp_path: Path) -> None:
@@ -139,7 +139,9 @@ def test_what_nobody_waits_for_is_ended(program: Path, tmp_path: Path) -> None:
     will(program, f'echo $$ > "{pid}.new"; mv "{pid}.new" "{pid}"; exec sleep 1000')
 
     async def ask_and_leave() -> None:
-        writing = asyncio.create_task(PageExports(lambda: tmp_path).write("csv", submit, tmp_path / "run.csv", Wish()))
+        writing = asyncio.create_task(
+            PageExports(lambda: tmp_path).write("csv", submit, tmp_path / "run.csv", ExportRequest())
+        )
         while not pid.exists():
             await asyncio.sleep(0.01)
         writing.cancel()

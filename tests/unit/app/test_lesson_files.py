@@ -15,11 +15,11 @@ from app.protocol.lesson import (
     all_lessons,
     catalogue,
     check_lesson,
+    fill_in,
     find_lesson,
     read_lesson,
-    told,
 )
-from app.protocol.performance import report_of
+from app.protocol.lesson_round import report_of
 
 from .lessons_to_give import short_lesson
 
@@ -80,7 +80,7 @@ def test_the_lines_of_nested_tables() -> None:
 
 def test_what_was_found_stands_in_the_text() -> None:
     rounds = [("slow", {"path_m": 1.0, "found_s": float("inf")}), ("fast", {"path_m": 3.0, "found_s": 2.0})]
-    assert told("{path_m of slow}, {path_m}, {found_s of slow}", rounds) == "1.0 m, 3.0 m, never"
+    assert fill_in("{path_m of slow}, {path_m}, {found_s of slow}", rounds) == "1.0 m, 3.0 m, never"
     assert Finding(measure="path_m", minus="path_m of slow").of(rounds) == 2.0
     assert Finding(measure="path_m", over="path_m of slow").of(rounds) == 3.0
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 
 from app.engine.engine import Engine
-from app.engine.lesson_run import MOST_FROM_ONE, Teaching
+from app.engine.lesson_supervisor import MOST_FROM_ONE, Teaching
 from app.protocol.lesson import Lesson, find_lesson
-from app.protocol.performance import perform, perform_round, set_scene
+from app.protocol.lesson_round import run_lesson, run_round, set_scene
 from web import messages as m
 
 from .engines import an_engine, run_for, tell
@@ -20,7 +20,7 @@ pytestmark = pytest.mark.slow
 @pytest.fixture(scope="module")
 def alone() -> str:
     """The state hash at the end of the short lesson by itself."""
-    return perform_round(short_lesson(), 0).session.state_hash()
+    return run_round(short_lesson(), 0).session.state_hash()
 
 
 def begun(lesson: Lesson) -> Engine:
@@ -86,13 +86,13 @@ def test_its_states_follow_one_another_and_it_pauses_where_somebody_has_to_think
 @pytest.mark.parametrize("lesson", [short_lesson(), two_rounds()], ids=["one round", "two rounds"])
 def test_it_is_the_lesson_by_itself_bit_for_bit(lesson: Lesson) -> None:
     engine = begun(lesson)
-    for performance in perform(lesson):
+    for round_ in run_lesson(lesson):
         assert play(engine).state == "predict"
-        if performance.number == 0:
+        if round_.number == 0:
             engine.snapshot()
             vote(engine, "somebody", 0)
         shown(engine)
-        assert engine.run.session.state_hash() == performance.session.state_hash()
+        assert engine.run.session.state_hash() == round_.session.state_hash()
     assert view(engine).state == "compared"
 
 
@@ -104,7 +104,7 @@ def test_what_was_predicted_is_compared_with_what_came() -> None:
         outcome = shown(engine).outcome
         assert outcome is not None
         assert (outcome.right, outcome.choice) == (right, 1)
-    engine, truth = asked(drawn_lesson()), perform_round(drawn_lesson(), 0).session.simulator.truth
+    engine, truth = asked(drawn_lesson()), run_round(drawn_lesson(), 0).session.simulator.truth
     tell(engine, type="predict", x=truth.x + 3.0, y=truth.y + 4.0)
     outcome = shown(engine).outcome
     assert outcome is not None

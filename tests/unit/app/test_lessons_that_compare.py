@@ -5,10 +5,10 @@ from __future__ import annotations
 import pytest
 
 from app.config import Config
-from app.engine.lesson_run import Teaching
+from app.engine.lesson_supervisor import Teaching
 from app.protocol.lesson import Lesson
+from app.protocol.lesson_round import measured_in, report_of, run_lesson
 from app.protocol.measures import MEASURES
-from app.protocol.performance import perform, report_of, rounds_of
 
 from .engines import an_engine, tell
 from .lessons_to_give import SHORT, short_lesson
@@ -25,13 +25,13 @@ def from_the_beginning() -> Lesson:
 
 
 def test_both_begin_with_the_scene_and_the_first_runs_as_without_the_second() -> None:
-    (alone,), report = perform(short_lesson()), report_of(from_the_beginning())
-    (one,) = report.performances
+    (alone,), report = run_lesson(short_lesson()), report_of(from_the_beginning())
+    (one,) = report.rounds
     second = one.session.companion
     assert second is not None
     assert (second.since_s, second.name) == (0.0, "paper-2006")
     assert (one.session.state_hash(), one.values) == (alone.session.state_hash(), alone.values)
-    (label, measured), (first, values) = rounds_of([one])
+    (label, measured), (first, values) = measured_in([one])
     assert (label, first, values) == ("paper-2006", "ours", one.values)
     assert set(measured) == OF_SECOND < set(values or {})
     assert measured["experiences"] == len(second.brain.experience_map) > 0
@@ -41,10 +41,10 @@ def test_both_begin_with_the_scene_and_the_first_runs_as_without_the_second() ->
 
 def test_a_copy_begins_when_it_is_shown_and_its_measures_count_from_there() -> None:
     words = "{views_new of with vision} and {views_new of without vision}."
-    (one,) = perform(short_lesson(show={**SHOW, "compare": "vision"}, outcome=words))
+    (one,) = run_lesson(short_lesson(show={**SHOW, "compare": "vision"}, outcome=words))
     assert one.session.companion is not None
     assert one.session.companion.since_s == pytest.approx(one.scene_ticks * 0.1)
-    (_, second), (_, first) = rounds_of([one])
+    (_, second), (_, first) = measured_in([one])
     assert second["views_new"] == 0 < first["views_new"]
     assert first["views_before"] + first["views_new"] == first["views"]
     assert second["views"] == first["views_before"]
@@ -53,17 +53,17 @@ def test_a_copy_begins_when_it_is_shown_and_its_measures_count_from_there() -> N
 def test_the_second_brain_is_the_first_again_when_nothing_is_different_yet() -> None:
     """What is measured of the second means the same as of the first."""
     still = {**SHOW, "compare": "rate", "steps": [{"do": "move", "moves": [[0.0, 0.0, 0.5]]}]}
-    (one,) = perform(short_lesson(show=still, scene={**SCENE, "set": {"local_view.enabled": False}}))
-    (_, second), (_, first) = rounds_of([one])
+    (one,) = run_lesson(short_lesson(show=still, scene={**SCENE, "set": {"local_view.enabled": False}}))
+    (_, second), (_, first) = measured_in([one])
     assert second == {name: first[name] for name in second}
 
 
 def test_one_addition_can_be_missing_by_its_name() -> None:
     words = "{error_m of ours} and {error_m of without carry} after {path_m}."
-    (one,) = perform(short_lesson(show={**SHOW, "compare": "carry"}, outcome=words))
+    (one,) = run_lesson(short_lesson(show={**SHOW, "compare": "carry"}, outcome=words))
     assert one.session.companion is not None
     assert one.session.companion.values == {"pose_cells.carry": False}
-    assert [label for label, _ in rounds_of([one])] == ["without carry", "ours"]
+    assert [label for label, _ in measured_in([one])] == ["without carry", "ours"]
 
 
 def test_what_cannot_be_compared_is_told_in_a_sentence(subtests: pytest.Subtests) -> None:

@@ -55,8 +55,8 @@ def test_every_stage_is_told_in_the_order_of_the_engine() -> None:
     session.tick(seen.append)
     assert tuple(seen) == STAGES
     walk, before = recorded(session)
-    assert [stage.name for stage in walk.told.stages] == list(TITLES)
-    assert all(stage.words.endswith(".") and len(stage.words) < 160 for stage in walk.told.stages)
+    assert [stage.name for stage in walk.view.stages] == list(TITLES)
+    assert all(stage.words.endswith(".") and len(stage.words) < 160 for stage in walk.view.stages)
     assert walk.parts is before
     assert walk.moved(-1) is None
 
@@ -67,7 +67,7 @@ def test_each_stage_shows_pose_cells_and_map_as_they_were() -> None:
     walk, before = recorded(session)
     parts = {}
     while walk is not None:
-        parts[walk.told.stages[walk.told.at].name] = walk.parts
+        parts[walk.view.stages[walk.view.at].name] = walk.parts
         walk = walk.moved(1)
     cells = {name: part["pose_cells"] for name, part in parts.items() if "pose_cells" in part}
     assert cells["image"] is cells["view match"] is before["pose_cells"]
@@ -102,7 +102,7 @@ def test_what_is_new_recognised_or_silent_is_said() -> None:
     while missing:
         assert session.tick_count < 12000, missing
         for _ in range(30):
-            told = {stage.name: stage.words for stage in recorded(session)[0].told.stages}
+            told = {stage.name: stage.words for stage in recorded(session)[0].view.stages}
             missing -= {(name, phrase) for name, phrase in missing if phrase in told[name]}
         for _ in range(470 * bool(missing)):
             session.tick()
@@ -114,7 +114,7 @@ def test_blind_and_standing_there_is_nothing_to_tell() -> None:
     for _ in range(30):
         session.tick()
     walk, _ = recorded(session)
-    words = {stage.name: stage.words for stage in walk.told.stages}
+    words = {stage.name: stage.words for stage in walk.view.stages}
     assert words["view match"].endswith("no view is active.")
     assert words["injection"] == "Nothing is injected: there is no view."
 
@@ -146,6 +146,6 @@ def test_between_two_beats_a_tick_has_one_stage() -> None:
     between = session.brain.beats.due(session.frame.dt) == 0
     for _ in range(2):
         walk, _ = recorded(session)
-        names = [stage.name for stage in walk.told.stages]
+        names = [stage.name for stage in walk.view.stages]
         assert names == (["image"] if between else list(TITLES))
         between = not between

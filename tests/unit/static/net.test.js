@@ -48,22 +48,22 @@ test("arrays of every kind come out as they went in, whatever lies before them; 
   assert.deepEqual(unframed(framed({ part: "memory", has: [] }, [])), { part: "memory", has: [], arrays: {} });
 });
 
-test("what a route tells comes as it is, or why not in sentences; whatever hangs is given up", async (context) => {
+test("what a route returns comes as it is, or why not in sentences; whatever hangs is given up", async (context) => {
   /** @type {unknown} */
   let signal;
-  /** @param {typeof fetch} answers @returns {Promise<{ told: unknown, wrong: string }>} */
+  /** @param {typeof fetch} answers @returns {Promise<{ data: unknown, wrong: string }>} */
   const got = (answers) => {
     context.mock.method(globalThis, "fetch", answers);
     return get("/api/lessons");
   };
-  const tells = await got(async (_path, options) => {
+  const found = await got(async (_path, options) => {
     signal = options?.signal;
     return Response.json([1]);
   });
-  assert.deepEqual(tells, { told: [1], wrong: "" });
+  assert.deepEqual(found, { data: [1], wrong: "" });
   assert.ok(signal instanceof AbortSignal);
   const refused = await got(async () => Response.json({ detail: [{ reason: "not now" }] }, { status: 503 }));
-  assert.deepEqual(refused, { told: null, wrong: "Not now." });
+  assert.deepEqual(refused, { data: null, wrong: "Not now." });
   const lost = await got(() => Promise.reject(new TypeError("Failed to fetch")));
   assert.match(lost.wrong, /connection is lost/);
   const late = await got(() => Promise.reject(new DOMException("signal timed out", "TimeoutError")));

@@ -33,7 +33,7 @@ test("while one moment is on its way, only the newest wish waits", async (contex
   answers[1]?.();
   await pass(10);
   assert.equal(seeker.busy, false);
-  seeker.told();
+  seeker.onMoment();
   assert.equal(seeker.aim, null);
 });
 

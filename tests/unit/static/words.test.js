@@ -42,37 +42,37 @@ const event = (/** @type {string} */ kind, text = "") => ({ kind, text });
 
 test("what matters is read aloud once, by its name; of too much the weightiest, in its order", () => {
   const speech = new Speech();
-  speech.hear(
+  speech.onEvents(
     [event("parameter", "a = 3"), event("kidnap", "moved by 4.0 m"), event("arrived", "at experience 12")],
     0,
   );
   assert.equal(speech.next(), "kidnap: moved by 4.0 m. arrived: at experience 12.");
   assert.equal(speech.next(), "");
   const tags = Array.from({ length: 5 }, (_, k) => event("tagged", `tag ${k}`));
-  speech.hear([event("kidnap", "a"), ...tags, event("fault", "b"), event("goal", "c")], 0);
+  speech.onEvents([event("kidnap", "a"), ...tags, event("fault", "b"), event("goal", "c")], 0);
   assert.equal(speech.next(), "kidnap: a. fault: b. goal set: c. And 5 more events.");
 });
 
 test("what comes in swarms is told now and then, and what a lesson says always", () => {
   const [speech, snap] = [new Speech(), event("snap", "the winner snaps by 4 cells")];
-  speech.hear([snap, snap, snap], 100);
+  speech.onEvents([snap, snap, snap], 100);
   assert.equal(speech.next(), "snap: the winner snaps by 4 cells.");
-  speech.hear([snap, event("lesson", "Kidnapped: it happens"), event("lesson", "it is over")], 107);
+  speech.onEvents([snap, event("lesson", "Kidnapped: it happens"), event("lesson", "it is over")], 107);
   assert.equal(speech.next(), "lesson: Kidnapped: it happens. lesson: it is over.");
-  speech.hear([snap], 116);
+  speech.onEvents([snap], 116);
   assert.match(speech.next(), /snap/);
 });
 
 test("each of a newcomer's three things is done when it has happened, in any order", () => {
   const first = new FirstMinute();
   first.at(FirstMinute.TICKS - 1);
-  first.hear([event("recovered"), event("goal")]);
+  first.onEvents([event("recovered"), event("goal")]);
   assert.deepEqual([first.explored, first.reached, first.found], [false, false, false]);
-  first.hear([event("kidnap"), event("lost"), event("recovered")]);
+  first.onEvents([event("kidnap"), event("lost"), event("recovered")]);
   assert.ok(first.found);
   first.at(FirstMinute.TICKS);
   assert.ok(!first.done);
-  first.hear([event("arrived")]);
+  first.onEvents([event("arrived")]);
   assert.ok(first.done);
 });
 

@@ -74,11 +74,11 @@ class StubViewer:
         self._note("replay", event)
 
     def press(
-        self, client_id: int, at: tuple[float, float], inspecting: bool, tell: Callable[[str | None], None]
+        self, client_id: int, at: tuple[float, float], inspecting: bool, on_answer: Callable[[str | None], None]
     ) -> None:
         self._note("press", client_id, at, inspecting)
         if self.comes_of_clicks:
-            tell(self.comes_of_clicks.pop(0))
+            on_answer(self.comes_of_clicks.pop(0))
 
     def turned(self, client_id: int) -> Camera | None:
         return self.cameras.get(client_id)

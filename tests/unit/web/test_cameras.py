@@ -220,10 +220,10 @@ def test_it_arrives_at_a_robot_that_stands_and_jumps_not_even_after_a_pause() ->
 def test_the_hand_is_obeyed_and_not_disturbed_and_our_own_moves_are_not_taken_for_it() -> None:
     camera, robot = follower(), np.array([1.0, 0.0, 0.0])
     before, turned = camera.offset.copy(), np.array([3.0, -1.0, 4.0])
-    camera.heard(np.array([0.3, 0.2, 0.0]) + before, np.array([0.3, 0.2, 0.0]), 1.0)
+    camera.on_camera(np.array([0.3, 0.2, 0.0]) + before, np.array([0.3, 0.2, 0.0]), 1.0)
     assert np.array_equal(camera.offset, before)
     assert camera.step(robot, 1.05) is not None
-    camera.heard(camera.at + turned, camera.at, 1.1)
+    camera.on_camera(camera.at + turned, camera.at, 1.1)
     assert camera.step(robot, 1.1 + REST_S / 2) is None
     seen = camera.step(robot, 1.2 + REST_S)
     assert seen is not None

@@ -16,7 +16,7 @@ from starlette.testclient import TestClient
 
 from tests.unit.web.doubles import house
 from web.http.asking import Submit
-from web.http.export import Offer, Wish
+from web.http.export import ExportRequest, Offer
 
 
 class FewExports:
@@ -25,16 +25,16 @@ class FewExports:
     def __init__(self) -> None:
         self.meanwhile: Callable[[], None] = lambda: None
         self.folders: list[Path] = []
-        self.wishes: list[Wish] = []
+        self.requests: list[ExportRequest] = []
         self.done = 0.25
 
     def offers(self) -> list[Offer]:
         refusals = {"one": None, "two": None, "never": "not today"}
         return [Offer(format=to, words=to.title(), refusal=why) for to, why in refusals.items()]
 
-    async def write(self, to: str, submit: Submit, out: Path, wish: Wish) -> list[Path]:  # noqa: ARG002
+    async def write(self, to: str, submit: Submit, out: Path, wanted: ExportRequest) -> list[Path]:  # noqa: ARG002
         self.folders.append(out.parent)
-        self.wishes.append(wish)
+        self.requests.append(wanted)
         await asyncio.to_thread(self.meanwhile)
         files = [out] if to == "one" else [out.with_stem(f"{out.stem}-{part}") for part in "ab"]
         for file in files:
@@ -73,7 +73,7 @@ def test_what_cannot_be_had_or_fails_is_said_and_leaves_nothing(client: TestClie
     assert all("no such format" in refusal(to) for to in ("x", "one/../x"))
     assert "greater than or equal to 0" in refusal("one", from_s=-1)
     assert "must be after from_s, 2.5" in refusal("one", from_s=2.5, until_s=2.5)
-    assert exports.wishes == []
+    assert exports.requests == []
     for error in (ValueError("the run is too short"), OSError(28, "No space left on device")):
 
         def fail(error: Exception = error) -> None:
@@ -90,7 +90,7 @@ def test_what_cannot_be_had_or_fails_is_said_and_leaves_nothing(client: TestClie
 def test_a_stretch_is_in_the_name(client: TestClient, exports: FewExports) -> None:
     query = {"to": "one", "from_s": 2.5, "until_s": 30, "pictures": "none"}
     assert client.get("/api/export", params=query).text.endswith("-2.5s-to-30s.one")
-    assert exports.wishes == [Wish(from_s=2.5, until_s=30.0, pictures="none")]
+    assert exports.requests == [ExportRequest(from_s=2.5, until_s=30.0, pictures="none")]
 
 
 def test_one_at_a_time_and_how_much_of_it_is_written_can_be_asked(client: TestClient, exports: FewExports) -> None:

@@ -129,7 +129,7 @@ def test_a_run_that_nobody_waits_for_is_given_up(monkeypatch) -> None:
         asyncio.run(offer.take(gone))
     assert stopped.is_set()
     assert (offer.done, engine.commands) == (None, [])
-    assert offer.told() != b"null"
+    assert offer.to_json() != b"null"
 
 
 def test_not_now_is_for_good_and_without_an_offer_there_is_nothing() -> None:

@@ -46,7 +46,7 @@ def test_has_the_fields_of_the_contract_and_no_others_with_the_snapshot_s_values
 def test_what_there_is_not_or_is_not_finite_is_null_and_as_fast_as_possible_is_0_as_in_the_command() -> None:
     fields = read(replace(SNAPSHOT, goal=None, speed=math.inf))
     assert (fields["goal"], fields["speed"]) == (None, 0)
-    told = [page_fields(replace(SNAPSHOT, goal=goal))["told"]["goal"] for goal in (None, SNAPSHOT.goal)]
+    told = [page_fields(replace(SNAPSHOT, goal=goal))["status"]["goal"] for goal in (None, SNAPSHOT.goal)]
     assert [one is None for one in told] == [True, False]
     for value in (math.nan, math.inf, -math.inf):
         assert read(replace(SNAPSHOT, error_map_m=value))["error_m"]["map"] is None

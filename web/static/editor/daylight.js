@@ -40,10 +40,10 @@ export class DaylightCurve {
 }
 
 export class DaylightForm {
-  /** @param {import("./world_client.js").WorldClient} office @param {Tell} tell */
-  constructor(office, tell) {
+  /** @param {import("./world_client.js").WorldClient} office @param {SetStatus} setStatus */
+  constructor(office, setStatus) {
     this.office = office;
-    this.tell = tell;
+    this.setStatus = setStatus;
     this.list = $("daylight-points");
     this.form = $("daylight-add");
     this.now_s = 0;
@@ -164,9 +164,9 @@ export class DaylightForm {
     const taken = this.points.some(([other], k) => other === at_s && k !== number);
     mark(when, Number.isNaN(at_s) || taken);
     mark(level, !isLevel(level.value));
-    if (Number.isNaN(at_s)) this.tell(NO_TIME(when.value), true);
-    else if (taken) this.tell(`There is a point at ${time(at_s)} already; change that one.`, true);
-    else if (!isLevel(level.value)) this.tell(NO_LEVEL(level.value), true);
+    if (Number.isNaN(at_s)) this.setStatus(NO_TIME(when.value), true);
+    else if (taken) this.setStatus(`There is a point at ${time(at_s)} already; change that one.`, true);
+    else if (!isLevel(level.value)) this.setStatus(NO_LEVEL(level.value), true);
     else return [at_s, Number(level.value)];
     return null;
   }
@@ -178,7 +178,7 @@ export class DaylightForm {
       if (!points.length) return [{ do: "delete", list: "daylight", number: 0 }];
       return [this.day ? { do: "change", list: "daylight", number: 0, item } : { do: "add", list: "daylight", item }];
     });
-    if (done) this.tell(words, false);
+    if (done) this.setStatus(words, false);
     return done;
   }
 
@@ -214,7 +214,7 @@ export class DaylightForm {
     delete input.dataset.typed;
     const repeat_s = input.value.trim() === "" ? 0 : seconds(input.value);
     mark(input, Number.isNaN(repeat_s));
-    if (Number.isNaN(repeat_s)) this.tell(NO_TIME(input.value), true);
+    if (Number.isNaN(repeat_s)) this.setStatus(NO_TIME(input.value), true);
     else if (
       !(await this.send(
         this.points,

@@ -37,7 +37,7 @@ export class Editor {
       (item) => this.change(item),
       () => this.remove(this.chosen),
     );
-    this.time = new TimePanel(this.office, (text, bad) => this.tell(text, bad));
+    this.time = new TimePanel(this.office, (text, bad) => this.setStatus(text, bad));
     this.saving = new SaveDialog(this.office);
     this.pointer = new Pointer(this);
     for (const button of this.buttons)
@@ -59,7 +59,7 @@ export class Editor {
     window.addEventListener("keydown", (event) => this.history(event), true);
     this.use("select");
     /** @type {[State, PageFields] | null} */
-    this.heard = null; // what the engine said last
+    this.latest = null; // the newest state of the engine
   }
 
   /** @returns {NodeListOf<HTMLButtonElement>} */
@@ -80,7 +80,7 @@ export class Editor {
     $("edit").setAttribute("aria-pressed", String(on));
     if (!on) return $("edit").focus();
     this.office.load();
-    if (this.heard) this.at(...this.heard); // a paused engine says nothing more
+    if (this.latest) this.at(...this.latest); // a paused engine says nothing more
     $("plan").focus();
   }
 
@@ -88,7 +88,7 @@ export class Editor {
 
   /** @param {State} state @param {PageFields} page */
   at(state, page) {
-    this.heard = /** @type {[State, PageFields]} */ ([state, page]);
+    this.latest = /** @type {[State, PageFields]} */ ([state, page]);
     if (!this.open) return;
     const { undo, redo, saved, edition } = page.office ?? {};
     $("edit-undo").disabled = !undo;
@@ -149,17 +149,17 @@ export class Editor {
 
   say() {
     const { takes, least = 1 } = TOOLS[this.tool];
-    this.tell(this.hint + (this.points.length ? " Escape cancels." : ""), false);
+    this.setStatus(this.hint + (this.points.length ? " Escape cancels." : ""), false);
     $("edit-finish").hidden = takes !== Infinity || this.points.length < least;
   }
 
   /** @param {string} text */
   wrong(text) {
-    this.tell(text, true);
+    this.setStatus(text, true);
   }
 
   /** @param {string} text @param {boolean} bad */
-  tell(text, bad) {
+  setStatus(text, bad) {
     const line = $("plan-status");
     if (line.textContent !== text) line.textContent = text;
     line.classList.toggle("bad", bad);
@@ -275,7 +275,7 @@ export class Editor {
     if (await this.office.edit(makes)) {
       this.choose(null);
       const also = lines.length ? ` and ${lines.length} line${lines.length > 1 ? "s" : ""} of the script` : "";
-      this.tell(`${one[0].toUpperCase()}${one.slice(1)}${also} deleted. Ctrl+Z brings it back.`, false);
+      this.setStatus(`${one[0].toUpperCase()}${one.slice(1)}${also} deleted. Ctrl+Z brings it back.`, false);
     }
   }
 }

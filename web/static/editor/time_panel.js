@@ -23,10 +23,10 @@ import { SCRIPT_ACTIONS } from "../shared.js";
 /** What the form for another line holds. @typedef {{ at_s: number, do: Action, text?: string, name?: string, level?: number }} Draft */
 
 export class TimePanel {
-  /** @param {import("./world_client.js").WorldClient} office @param {Tell} tell for the status line */
-  constructor(office, tell) {
+  /** @param {import("./world_client.js").WorldClient} office @param {SetStatus} setStatus for the status line */
+  constructor(office, setStatus) {
     this.office = office;
-    this.tell = tell;
+    this.setStatus = setStatus;
     this.box = $("time");
     this.list = $("script-lines");
     this.form = $("script-add");
@@ -36,7 +36,7 @@ export class TimePanel {
     this.names = ""; // that can be chosen in the form
     /** @type {number | null} */
     this.place = null; // of the mark for the present moment among the lines
-    this.daylight = new DaylightForm(office, tell);
+    this.daylight = new DaylightForm(office, setStatus);
     this.now = make("li", { className: "now" });
     $("edit-time").addEventListener("click", () => this.toggle());
     $("time-close").addEventListener("click", () => this.toggle(false));
@@ -152,8 +152,8 @@ export class TimePanel {
     const noLevel = what.value === "daylight" && changed !== what && which !== null && !isLevel(which.value);
     mark(when, Number.isNaN(at_s));
     if (which) mark(which, noLevel);
-    if (Number.isNaN(at_s)) this.tell(NO_TIME(when.value), true);
-    else if (noLevel) this.tell(NO_LEVEL(which.value), true);
+    if (Number.isNaN(at_s)) this.setStatus(NO_TIME(when.value), true);
+    else if (noLevel) this.setStatus(NO_LEVEL(which.value), true);
     else
       return line(
         this.office.world,
@@ -169,7 +169,7 @@ export class TimePanel {
     const typed = parts(this.form)[0]?.value;
     if (!item || !(await this.office.edit(() => [{ do: "add", list: "script", item }]))) return;
     const words = `${time(item.at_s)}: ${ACTIONS[item.do].title.toLowerCase()} ${item.name ?? item.level ?? ""}`.trim();
-    this.tell(
+    this.setStatus(
       item.at_s > this.now_s ? `Added: at ${words}.` : `Added: at ${words}. That is past; it happens after a restart.`,
       false,
     );
@@ -190,14 +190,14 @@ export class TimePanel {
     const done = await this.office.edit(() => [
       { do: "change", list: "script", number: Number(row.dataset.number), item },
     ]);
-    if (done) this.tell("Changed. Ctrl+Z takes it back.", false);
+    if (done) this.setStatus("Changed. Ctrl+Z takes it back.", false);
     else mark(target, true);
   }
 
   /** @param {number} number */
   async remove(number) {
     if (await this.office.edit(() => [{ do: "delete", list: "script", number }]))
-      this.tell("Line deleted. Ctrl+Z brings it back.", false);
+      this.setStatus("Line deleted. Ctrl+Z brings it back.", false);
   }
 }
 

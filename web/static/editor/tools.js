@@ -309,7 +309,7 @@ export class Pointer {
     this.plan.cursor(p);
     this.plan.reveal(p);
     if (editor.points.length) editor.draftTo(p);
-    editor.tell(`${p[0].toFixed(2)}, ${p[1].toFixed(2)} m. ${editor.hint}`, false);
+    editor.setStatus(`${p[0].toFixed(2)}, ${p[1].toFixed(2)} m. ${editor.hint}`, false);
   }
 
   enter() {
@@ -318,7 +318,7 @@ export class Pointer {
     this.plan.cursor(p);
     if (editor.tool === "select") {
       editor.choose(this.plan.thingAt(p));
-      editor.tell(
+      editor.setStatus(
         editor.chosen
           ? `${THINGS[editor.chosen.list].one} selected. Delete removes it; its values are in the form.`
           : "There is nothing here.",

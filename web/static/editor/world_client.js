@@ -136,19 +136,19 @@ export class SaveDialog {
   }
 
   async save() {
-    const told = await post("/api/worlds/save", {
+    const reply = await post("/api/worlds/save", {
       name: $("save-name").value.trim(),
       title: $("save-title").value.trim() || null,
       replace: $("save-replace").checked,
       rename: $("save-rename").checked && !$("save-rename-row").hidden,
     });
-    if (!told.wrong) {
+    if (!reply.wrong) {
       $("save-dialog").close();
-      toast(`Saved as ${told.file}`);
+      toast(`Saved as ${reply.file}`);
       return;
     }
-    $("save-wrong").textContent = told.wrong;
+    $("save-wrong").textContent = reply.wrong;
     $("save-wrong").hidden = false;
-    $("save-replace-row").hidden = told.field !== "replace";
+    $("save-replace-row").hidden = reply.field !== "replace";
   }
 }

@@ -174,8 +174,8 @@ export class Gallery {
 
   /** What the server has at this address; null, and a sentence, if nothing can be had. @param {string} path */
   async ask(path) {
-    const { told, wrong } = await get(path);
-    if (!wrong) return told;
+    const { data, wrong } = await get(path);
+    if (!wrong) return data;
     this.wrong(wrong);
     $("gallery-none").textContent = "";
     return null;

@@ -44,7 +44,7 @@ export class Header {
     $("seed").textContent = String(state.seed);
     this.showWorlds(state.world, page);
     this.showStatus(page);
-    this.showGoal(page.told.goal);
+    this.showGoal(page.status.goal);
     this.showWalk(page.walk);
     this.showFault(page.fault, state.running);
   }
@@ -70,7 +70,7 @@ export class Header {
 
   /** @param {PageFields} page */
   showStatus(page) {
-    const { icon, tone, words: text } = page.told.robot;
+    const { icon, tone, words: text } = page.status.robot;
     const chip = $("status");
     setIcon(chip, icon);
     chip.dataset.tone = tone;
@@ -142,7 +142,7 @@ export class Theming {
     document.documentElement.dataset.theme = name;
     setIcon($("theme"), name === "dark" ? "sun" : "moon");
     $("theme").setAttribute("aria-label", name === "dark" ? "Light colours" : "Dark colours");
-    this.link.tell({ type: "theme", name });
+    this.link.send({ type: "theme", name });
   }
 
   toggle() {

@@ -131,8 +131,8 @@ export class FirstMinuteCard {
   }
 
   /** Events that have just happened. @param {TimelineEvent[]} events */
-  hear(events) {
-    this.things.hear(events);
+  onEvents(events) {
+    this.things.onEvents(events);
     this.draw();
   }
 
@@ -194,7 +194,7 @@ export class FirstMinute {
   }
 
   /** @param {{ kind: string }[]} events those that have just happened */
-  hear(events) {
+  onEvents(events) {
     for (const { kind } of events) {
       if (kind === "arrived") this.reached = true;
       else if (kind === "kidnap") this.#moved = true;

@@ -71,8 +71,8 @@ export class LessonList {
 
   /** What there is. */
   async look() {
-    const { told, wrong } = await get("/api/lessons");
-    this.cards = told ?? this.cards;
+    const { data, wrong } = await get("/api/lessons");
+    this.cards = data ?? this.cards;
     if (wrong) this.wrong(wrong);
     return this.cards;
   }

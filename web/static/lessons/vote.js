@@ -51,9 +51,9 @@ async function take({ lesson: now, robot: at, estimate }) {
 async function begin(name) {
   const answer = await fetch(`/api/lessons/${name}`);
   if (!answer.ok) return;
-  const told = /** @type {LessonText} */ (await answer.json());
-  [text, own, begun] = [told, null, name];
-  question = new Question(told.predict, vote);
+  const loaded = /** @type {LessonText} */ (await answer.json());
+  [text, own, begun] = [loaded, null, name];
+  question = new Question(loaded.predict, vote);
   $("vote-question").replaceChildren(question.box);
 }
 

@@ -113,7 +113,7 @@ export class Connection extends EventTarget {
       const message = typeof event.data === "string" ? JSON.parse(event.data) : unframed(event.data);
       if (message.type === "answer") this.settle(message);
       else this.dispatchEvent(new CustomEvent(message.type, { detail: message }));
-      if (message.type === "state") this.tell({ type: "got" }); // asks for the next, which is the newest by then
+      if (message.type === "state") this.send({ type: "got" }); // asks for the next, which is the newest by then
     };
     socket.onclose = () => {
       clearTimeout(slow);
@@ -155,7 +155,7 @@ export class Connection extends EventTarget {
    * Fire and forget, for what is sent often or concerns this page alone. Only a refusal is answered.
    * @param {(Command | PageMessage) & { id?: number }} command
    */
-  tell(command) {
+  send(command) {
     const goes = this.open && (!this.watches || isLook(command.type));
     if (goes) this.socket.send(JSON.stringify(command));
     return goes;
@@ -168,7 +168,7 @@ export class Connection extends EventTarget {
    */
   ask(command, { quiet = false } = {}) {
     const id = ++this.lastId;
-    if (!this.tell({ ...command, id })) return Promise.resolve({ accepted: false, detail: [] });
+    if (!this.send({ ...command, id })) return Promise.resolve({ accepted: false, detail: [] });
     return new Promise((resolve) => this.waiting.set(id, { resolve, quiet }));
   }
 }

@@ -1,4 +1,4 @@
-// What the routes tell, and changes that are not commands: JSON sent to one of them.
+// What the routes return, and changes that are not commands: JSON sent to one of them.
 
 import { sentence } from "../ui/words.js";
 
@@ -7,7 +7,7 @@ import { sentence } from "../ui/words.js";
  * @param {string} path
  * @param {object} body
  * @param {AbortSignal} [signal] gives it up
- * @returns {Promise<Told>}
+ * @returns {Promise<Reply>}
  */
 export async function post(path, body, signal) {
   try {
@@ -17,9 +17,9 @@ export async function post(path, body, signal) {
       body: JSON.stringify(body),
       signal,
     });
-    const told = await answer.json();
-    if (answer.ok) return told;
-    return { wrong: reasons(told), field: told.detail[0].field };
+    const data = await answer.json();
+    if (answer.ok) return data;
+    return { wrong: reasons(data), field: data.detail[0].field };
   } catch {
     return { wrong: "The connection is lost; nothing was changed.", field: null };
   }
@@ -31,17 +31,17 @@ const ANSWERED_MS = 20_000;
  * What lies at an address, or why it cannot be had, in sentences. Whatever hangs is given up: a list would stay empty for ever.
  * @template T
  * @param {string} path
- * @returns {Promise<{ told: T | null, wrong: string }>}
+ * @returns {Promise<{ data: T | null, wrong: string }>}
  */
 export async function get(path) {
   try {
     const answer = await fetch(path, { signal: AbortSignal.timeout(ANSWERED_MS) });
-    const told = await answer.json();
-    return answer.ok ? { told, wrong: "" } : { told: null, wrong: reasons(told) };
+    const data = await answer.json();
+    return answer.ok ? { data, wrong: "" } : { data: null, wrong: reasons(data) };
   } catch (error) {
     const late = error instanceof DOMException && error.name === "TimeoutError";
     return {
-      told: null,
+      data: null,
       wrong: late ? "The program did not answer. Close this and try again." : "The connection is lost.",
     };
   }
@@ -56,5 +56,5 @@ export async function worlds() {
   }
 }
 
-/** What is wrong, in sentences. @param {{ detail: Wrong[] }} told */
+/** What is wrong, in sentences. @param {{ detail: Wrong[] }} refusal */
 export const reasons = ({ detail }) => detail.map((wrong) => sentence(wrong.reason)).join(" ");

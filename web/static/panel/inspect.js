@@ -139,12 +139,12 @@ class InjectForm {
 function slider(words, unit, low, high, step, value) {
   const input = make("input", { type: "range", min: `${low}`, max: `${high}`, step: `${step}`, value: `${value}` });
   const shown = make("output");
-  const tell = () => {
+  const update = () => {
     shown.value = `${input.value} ${unit}`.replace(" °", "°");
     input.setAttribute("aria-valuetext", shown.value);
   };
-  input.addEventListener("input", tell);
-  tell();
+  input.addEventListener("input", update);
+  update();
   const box = make("label", { className: "slider" }, make("span", { textContent: words }), shown, input);
   return { box, value: () => Number(input.value) };
 }
@@ -272,7 +272,7 @@ export class Report {
 const MOST_VIEWS = 4;
 
 /** @typedef {[number, number, number, number]} Packet number, x, y (cells), share of the activity */
-/** @typedef {{ id: number, without: number[], event: string, number: string, cells: [number, number], packets: [Packet[], Packet[]], seen: [number, string][], said: [number, number][] }} Told */
+/** @typedef {{ id: number, without: number[], event: string, number: string, cells: [number, number], packets: [Packet[], Packet[]], seen: [number, string][], said: [number, number][] }} WhyReport */
 
 /** Why something happened: the chain of what led to it, the packets before and after, and the views that played a part. */
 class Why {
@@ -296,31 +296,31 @@ class Why {
     );
   }
 
-  /** @param {Told} told @param {import("./senses.js").Arrays} arrays */
-  show(told, arrays) {
-    renew(this.said, told.said, () =>
-      told.said.length ? [heading("What spoke for this place, and against it"), bars(told.said)] : [],
+  /** @param {WhyReport} report @param {import("./senses.js").Arrays} arrays */
+  show(report, arrays) {
+    renew(this.said, report.said, () =>
+      report.said.length ? [heading("What spoke for this place, and against it"), bars(report.said)] : [],
     );
-    renew(this.packets, told.packets, () =>
-      told.packets.map((packets, k) => {
+    renew(this.packets, report.packets, () =>
+      report.packets.map((packets, k) => {
         const words = k === 0 ? "the tick before" : "then";
-        return make("div", {}, caption(words), fromAbove(packets, told.cells, words));
+        return make("div", {}, caption(words), fromAbove(packets, report.cells, words));
       }),
     );
-    renew(this.views, [told.number, told.seen], () => (told.seen.length ? this.seen(told.seen) : []));
-    renew(this.without, [told.id, told.without], () => (told.without.length ? this.goOn(told) : []));
-    for (const [k, [view]] of told.seen.entries())
+    renew(this.views, [report.number, report.seen], () => (report.seen.length ? this.seen(report.seen) : []));
+    renew(this.without, [report.id, report.without], () => (report.without.length ? this.goOn(report) : []));
+    for (const [k, [view]] of report.seen.entries())
       this.pictures[k].says(`the stored view ${view}`).show(arrays[`seen${k}`]);
   }
 
-  /** @param {Told} told */
+  /** @param {WhyReport} report */
   goOn({ id, without }) {
     const words = without.length === 1 ? "this view" : "these views";
     const button = make("button", { type: "button", textContent: `Go on without ${words}` });
     button.dataset.key = "without";
     button.addEventListener("click", () => this.ask({ type: "go_on_without", event: id }));
-    const told = `Back to before it, in a branch whose brain has forgotten ${words}. The run as it was stays.`;
-    return [heading("What if not?"), note(told), button];
+    const hint = `Back to before it, in a branch whose brain has forgotten ${words}. The run as it was stays.`;
+    return [heading("What if not?"), note(hint), button];
   }
 
   /** @param {[number, string][]} seen */

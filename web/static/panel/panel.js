@@ -96,7 +96,7 @@ export class Panel {
     this.panels = new Map();
     this.tabs = new TabList(Object.keys(this.views), (name) => this.open(name));
     /** @type {Map<string, Message>} the last message of each part, with all its arrays */
-    this.told = new Map();
+    this.received = new Map();
     /** @type {string | null | undefined} */
     this.looked = undefined;
     this.opened = "Senses";
@@ -107,10 +107,10 @@ export class Panel {
     this.open("Senses");
     this.show(this.shown);
     narrow.addEventListener("change", () => this.show(!narrow.matches && document.body.dataset.presenter !== "true"));
-    document.addEventListener("visibilitychange", () => this.tell());
+    document.addEventListener("visibilitychange", () => this.sendTabs());
     link.on("hello", () => {
-      this.told.clear(); // a new connection: the server sends everything again
-      this.tell();
+      this.received.clear(); // a new connection: the server sends everything again
+      this.sendTabs();
     });
     link.on("panel", (/** @type {Message} */ message) => this.take(message));
     new MutationObserver(() => this.recolour()).observe(document.documentElement, { attributeFilter: ["data-theme"] });
@@ -139,7 +139,7 @@ export class Panel {
     this.opened = name;
     this.tabs.select(name);
     for (const [other, box] of this.panels) box.hidden = other !== name;
-    this.tell();
+    this.sendTabs();
   }
 
   /** Opens Tune at one parameter, as soon as it has come. @param {string} name */
@@ -163,26 +163,26 @@ export class Panel {
     document.body.dataset.panels = String(on);
     for (const button of document.querySelectorAll("[data-shows-panel]"))
       button.setAttribute("aria-expanded", String(on));
-    this.tell();
+    this.sendTabs();
   }
 
   /** Tells the server which tab is open, none while the panel is hidden; not more often than every `EVERY_MS`. */
-  tell() {
+  sendTabs() {
     clearTimeout(this.later);
     const wait_ms = this.next_ms - performance.now();
     if (wait_ms > 0) {
-      this.later = window.setTimeout(() => this.tell(), wait_ms);
+      this.later = window.setTimeout(() => this.sendTabs(), wait_ms);
       return;
     }
     this.next_ms = performance.now() + EVERY_MS;
-    this.link.tell({ type: "tabs", names: this.shown && !document.hidden ? [this.opened] : [] });
+    this.link.send({ type: "tabs", names: this.shown && !document.hidden ? [this.opened] : [] });
   }
 
   /** @param {Message} message */
   take({ part, data, has, arrays = {} }) {
-    const before = this.told.get(part)?.arrays ?? {};
+    const before = this.received.get(part)?.arrays ?? {};
     const whole = Object.fromEntries(has.map((name) => [name, arrays[name] ?? before[name]]));
-    this.told.set(part, { part, data, has, arrays: whole });
+    this.received.set(part, { part, data, has, arrays: whole });
     this.draw(part, data, whole);
   }
 
@@ -192,7 +192,7 @@ export class Panel {
   }
 
   recolour() {
-    const cells = this.told.get("cells");
+    const cells = this.received.get("cells");
     if (cells?.arrays) this.draw("cells", cells.data, cells.arrays);
     this.truth.recolour();
   }

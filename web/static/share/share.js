@@ -52,9 +52,9 @@ export class Share {
 
   /** Asks for the moment that is shown; null: the reason has been said. @returns {Promise<Moment | null>} */
   async ask() {
-    const told = await post("/api/situation", this.look());
-    if (told.wrong) toast(told.wrong, { bad: true });
-    this.moment = told.wrong ? null : /** @type {Moment} */ (/** @type {unknown} */ (told));
+    const reply = await post("/api/situation", this.look());
+    if (reply.wrong) toast(reply.wrong, { bad: true });
+    this.moment = reply.wrong ? null : /** @type {Moment} */ (/** @type {unknown} */ (reply));
     return this.moment;
   }
 
@@ -156,8 +156,8 @@ export class Opening {
   /** @param {string} text @param {string} what */
   async open(text, what) {
     if (!(await this.page.mayLeave())) return;
-    const told = await post("/api/situation/open", { text });
-    if (told.wrong) toast(`${what} cannot be opened. ${told.wrong}`, { bad: true });
+    const reply = await post("/api/situation/open", { text });
+    if (reply.wrong) toast(`${what} cannot be opened. ${reply.wrong}`, { bad: true });
   }
 
   /** What arrives: how far it is. @param {PageFields} page */

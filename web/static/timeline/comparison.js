@@ -52,7 +52,7 @@ export class Comparison {
   constructor(timeline, link) {
     this.timeline = timeline;
     this.link = link;
-    this.told = "";
+    this.drawn = "";
   }
 
   /** Begins or ends it. */
@@ -72,9 +72,9 @@ export class Comparison {
 
   /** @param {TimeFields} time */
   show({ branch, branches, sides, differs }) {
-    const told = JSON.stringify([branch, branches.length, sides, differs]);
-    if (told === this.told) return;
-    this.told = told;
+    const drawn = JSON.stringify([branch, branches.length, sides, differs]);
+    if (drawn === this.drawn) return;
+    this.drawn = drawn;
     $("compare").hidden = sides.length === 0;
     if (!sides.length) return;
     const others = branches.filter(({ number }) => number !== branch);

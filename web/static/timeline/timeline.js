@@ -90,7 +90,7 @@ export class Timeline {
     const looped = JSON.stringify(time?.loop) !== JSON.stringify(this.time?.loop);
     const follows = this.part && !time?.past && this.time_s <= this.part.to;
     [this.tick, this.time_s, this.time] = [tick, time_s, time];
-    this.seeker.told();
+    this.seeker.onMoment();
     if (this.part && follows && time_s > this.part.to) this.pan(0.5);
     if (time) {
       this.tools.show(time, time_s);
@@ -183,11 +183,11 @@ export class Timeline {
       svg("path", { d: `M${x(this.shown_s)} ${y - 12}v24`, class: "now" }),
       svg("circle", { cx: x(this.shown_s), cy: y + 13, r: this.time?.past ? 5 : 0, class: "grip" }),
     );
-    this.tell();
+    this.describe();
   }
 
-  /** What the slider says to those who hear it. */
-  tell() {
+  /** The state of the slider for screen readers. */
+  describe() {
     const says = `${fine(this.shown_s)} of ${clock(this.end_s)}${this.time?.past ? ", the past" : ""}, ${this.events.length} events`;
     const values = { valuemin: this.time?.begin_s ?? 0, valuemax: this.end_s, valuenow: this.shown_s };
     for (const [name, value] of Object.entries(values)) this.place.setAttribute(`aria-${name}`, value.toFixed(1));
@@ -256,7 +256,7 @@ export class Bookmarks {
   constructor(timeline, link) {
     this.timeline = timeline;
     this.link = link;
-    this.told = "";
+    this.drawn = "";
     /** @type {Bookmark[]} */
     this.rows = [];
     /** @type {number | null} */
@@ -278,9 +278,9 @@ export class Bookmarks {
 
   /** @param {TimeFields} time */
   show({ bookmarks }) {
-    const told = JSON.stringify(bookmarks);
-    if (told === this.told) return;
-    this.told = told;
+    const drawn = JSON.stringify(bookmarks);
+    if (drawn === this.drawn) return;
+    this.drawn = drawn;
     this.rows = bookmarks;
     this.draw();
     this.timeline.redraw(true);

@@ -11,7 +11,7 @@ export class Tools {
     this.link = link;
     /** @type {number | null} */
     this.a = null; // where a loop is to begin, until it has an end
-    this.told = "";
+    this.drawn = "";
     const steps = /** @type {const} */ ({ "second-back": -10, "tick-back": -1, "tick-on": 1, "second-on": 10 });
     for (const [id, ticks] of Object.entries(steps))
       $(/** @type {keyof typeof steps} */ (id)).addEventListener("click", () => this.tick(ticks));
@@ -69,9 +69,9 @@ export class Tools {
     done.value = time.done;
     done.setAttribute("aria-label", time.doing || "nothing");
     $("loop-off").hidden = !time.loop && this.a === null;
-    const told = JSON.stringify([time.branch, time.branches.length, time.sides.length]);
-    if (told !== this.told) this.branches(time);
-    this.told = told;
+    const drawn = JSON.stringify([time.branch, time.branches.length, time.sides.length]);
+    if (drawn !== this.drawn) this.branches(time);
+    this.drawn = drawn;
   }
 
   /** @param {TimeFields} time */
@@ -139,11 +139,11 @@ export class Seeker {
     this.busy = false;
     this.gaveUp = false; // the last moment, before it came
     /** @type {number | null} */
-    this.aim = null; // the tick asked for last, until the page is told of it: quick steps count from here
+    this.aim = null; // the tick asked for last, until it arrives: quick steps count from here
   }
 
-  /** The page has been told of a moment. What comes after an answer is not older than it. */
-  told() {
+  /** A moment has arrived. What comes after an answer is not older than it. */
+  onMoment() {
     if (!this.busy) this.aim = null;
   }
 

@@ -41,7 +41,7 @@ export class Speech {
   #heard_s = new Map();
 
   /** @param {Pick<TimelineEvent, "kind" | "text">[]} events @param {number} now_s of the wall clock */
-  hear(events, now_s) {
+  onEvents(events, now_s) {
     for (const event of events) {
       const { kind } = event;
       const silent_s = now_s - (this.#heard_s.get(kind) ?? -Infinity);
@@ -75,8 +75,8 @@ export class Speaker {
   }
 
   /** Events that have just happened. @param {TimelineEvent[]} events */
-  hear(events) {
-    this.speech.hear(events, performance.now() / 1000);
+  onEvents(events) {
+    this.speech.onEvents(events, performance.now() / 1000);
     if (this.silent) this.speak();
   }
 
@@ -181,8 +181,8 @@ export class PlaceList {
     $("places-said").textContent = "Asking the robot";
     this.dialog.showModal();
     if (byKey || !window.matchMedia("(pointer: coarse)").matches) $("places-typed").focus(); // a keyboard on the screen would cover the list
-    const { told, wrong } = await get("/api/places");
-    this.places = told;
+    const { data, wrong } = await get("/api/places");
+    this.places = data;
     if (wrong) $("places-said").textContent = wrong;
     this.draw();
   }

@@ -21,13 +21,13 @@ export class Aids {
     $("vision").addEventListener("click", () => this.see(!this.seeing));
     $("replay").addEventListener("click", () => this.replay());
     viewer.addEventListener("view", () => this.mark(false)); // a view button takes the camera elsewhere
-    link.on("hello", () => this.following && link.tell({ type: "follow", on: true }));
+    link.on("hello", () => this.following && link.send({ type: "follow", on: true }));
   }
 
   /** @param {boolean} on */
   follow(on) {
     this.mark(on);
-    this.link.tell({ type: "follow", on });
+    this.link.send({ type: "follow", on });
   }
 
   /** @param {boolean} on */
@@ -43,7 +43,7 @@ export class Aids {
   }
 
   replay() {
-    if (this.event !== null) this.link.tell({ type: "replay", event: this.event });
+    if (this.event !== null) this.link.send({ type: "replay", event: this.event });
   }
 
   /** @param {PageFields} page */
@@ -75,7 +75,7 @@ export class Presenter {
     this.panel = panel;
     this.link = link;
     this.panelWas = panel.shown;
-    link.on("hello", () => this.on && link.tell({ type: "present", on: true }));
+    link.on("hello", () => this.on && link.send({ type: "present", on: true }));
     link.on("presenting", (/** @type {{ on: boolean }} */ { on }) => this.turn(on)); // heard by those who look on
     $("presenter-end").addEventListener("click", () => this.turn(false));
     $("spotlight").addEventListener("click", () => this.light(!this.lit));
@@ -102,7 +102,7 @@ export class Presenter {
   turn(on) {
     if (on === this.on) return;
     document.body.dataset.presenter = String(on);
-    this.link.tell({ type: "present", on });
+    this.link.send({ type: "present", on });
     if (on) this.panelWas = this.panel.shown;
     this.panel.show(on ? false : this.panelWas);
     $("presenter-bar").hidden = !on || this.link.watches;

@@ -83,7 +83,7 @@ export class BesideStrip {
   /** @param {(wish: Command, done?: string) => Promise<boolean>} command */
   constructor(command) {
     this.command = command;
-    this.told = "";
+    this.drawn = "";
     this.additions = new AdditionChoice((pair, since) => this.begin(pair, since));
     $("beside-heads").append(
       ...HEADS.map((text) => make("th", { scope: "col", textContent: text, title: MEANS[text] ?? "" })),
@@ -152,9 +152,9 @@ export class BesideStrip {
 
   /** @param {DifferenceFields[]} differences */
   showDifferences(differences) {
-    const told = JSON.stringify(differences);
-    if (told === this.told) return;
-    this.told = told;
+    const drawn = JSON.stringify(differences);
+    if (drawn === this.drawn) return;
+    this.drawn = drawn;
     say($("beside-since"), differences.length ? "They differ since:" : "No difference yet.");
     $("beside-differences").replaceChildren(
       ...differences.map((difference) => {

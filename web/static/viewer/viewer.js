@@ -76,7 +76,7 @@ export class Viewer extends EventTarget {
     this.mark();
     this.drawing.draw();
     this.dispatchEvent(new Event("view"));
-    this.link.tell(camera ? { type: "camera", name: view, at: camera } : { type: "view", name: view });
+    this.link.send(camera ? { type: "camera", name: view, at: camera } : { type: "view", name: view });
   }
 
   // A camera leaves one row of buttons free. What they need beyond that is taken from the frame, whose shape viser tells the camera.
@@ -109,7 +109,7 @@ export class Viewer extends EventTarget {
       this.build();
     }
     this.launch = launch;
-    this.link.tell({ type: "view", name: this.view });
+    this.link.send({ type: "view", name: this.view });
   }
 
   loaded() {

@@ -163,13 +163,13 @@ export class Files {
     this.busy = true;
     const names = files.map((file) => file.name).join(" and ");
     const began = performance.now();
-    const tell = () => {
+    const showDoing = () => {
       const seconds = Math.round((performance.now() - began) / 1000);
       $("open-doing").textContent = `Making a world of ${names}${seconds ? `, ${seconds} s` : ""} …`;
     };
     this.say("busy");
-    tell();
-    const timer = setInterval(tell, 1000);
+    showDoing();
+    const timer = setInterval(showDoing, 1000);
     try {
       const parts = await Promise.all(files.map(async (file) => ({ name: file.name, data: await base64(file) })));
       const answer = await fetch("/api/worlds/open", {
@@ -177,13 +177,13 @@ export class Files {
         headers: { "Content-Type": "application/json" },
         body: JSON.stringify({ files: parts, scale_m: scale }),
       });
-      const told = await answer.json();
+      const reply = await answer.json();
       if (answer.ok) {
         this.dialog.close();
-        const size = told.size_m.map(metres).join(" × ");
-        toast(`${told.name}: ${told.walls.toLocaleString("en")} walls, ${size} m. The robot starts in it.`);
-        for (const sentence of told.said) toast(ended(sentence));
-      } else this.fail(told.detail.map((/** @type {Wrong} */ wrong) => ended(wrong.reason)).join(" "), scale !== null);
+        const size = reply.size_m.map(metres).join(" × ");
+        toast(`${reply.name}: ${reply.walls.toLocaleString("en")} walls, ${size} m. The robot starts in it.`);
+        for (const sentence of reply.said) toast(ended(sentence));
+      } else this.fail(reply.detail.map((/** @type {Wrong} */ wrong) => ended(wrong.reason)).join(" "), scale !== null);
     } catch {
       this.fail(`${names} could not be sent.`, scale !== null);
     } finally {
@@ -286,9 +286,9 @@ export async function play(file) {
 /**
  * Sends the files of a folder, some at once. Returns what is wrong, in sentences, or "" when it plays.
  * @param {Folder} folder
- * @param {(words: string) => void} tell how far it is
+ * @param {(words: string) => void} report how far it is
  */
-export async function playFolder({ name, files }, tell) {
+export async function playFolder({ name, files }, report) {
   const whole = files.reduce((sum, { file }) => sum + file.size, 0);
   if (!files.length) return `${name}: there is no file in this folder.`;
   if (whole > MOST_RECORDED) return tooLarge(name, whole);
@@ -303,7 +303,7 @@ export async function playFolder({ name, files }, tell) {
       wrong ||= said;
       sent += 1;
       bytes += next.file.size;
-      tell(
+      report(
         `Sending ${name}: ${sent.toLocaleString("en")} of ${files.length.toLocaleString("en")} files, ${megabytes(bytes)} of ${megabytes(whole)} …`,
       );
     }
@@ -311,7 +311,7 @@ export async function playFolder({ name, files }, tell) {
   try {
     await Promise.all(Array.from({ length: AT_ONCE }, one));
     if (wrong) return wrong;
-    tell(`Looking over ${name} …`);
+    report(`Looking over ${name} …`);
     return await send("POST", { folder, name }, new Blob());
   } catch {
     return `${name} could not be sent.`;

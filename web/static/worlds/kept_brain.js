@@ -129,9 +129,9 @@ async function send(file) {
   const headers = { "Content-Type": "application/octet-stream" };
   try {
     const answer = await fetch("/api/brain", { method: "POST", headers, body: file });
-    const told = await answer.json();
+    const reply = await answer.json();
     if (answer.ok) toast(`Started anew with the brain of ${file.name}.`);
-    else for (const wrong of told.detail) toast(sentence(wrong.reason), { bad: true });
+    else for (const wrong of reply.detail) toast(sentence(wrong.reason), { bad: true });
   } catch {
     toast(`${file.name} could not be sent.`, { bad: true });
   }

@@ -39,17 +39,17 @@ export class NewWorld {
   }
 
   async begin() {
-    const told = await post("/api/worlds/new", {
+    const reply = await post("/api/worlds/new", {
       name: $("new-name").value.trim(),
       title: $("new-title").value.trim() || null,
       width_m: Number($("new-width").value),
       depth_m: Number($("new-depth").value),
     });
-    $("new-wrong").hidden = !told.wrong;
-    $("new-wrong").textContent = told.wrong ?? "";
-    if (told.wrong) return;
+    $("new-wrong").hidden = !reply.wrong;
+    $("new-wrong").textContent = reply.wrong ?? "";
+    if (reply.wrong) return;
     $("new-dialog").close();
-    toast(`${told.title}: an empty room of ${told.size_m.join(" × ")} m. The robot starts in it.`);
+    toast(`${reply.title}: an empty room of ${reply.size_m.join(" × ")} m. The robot starts in it.`);
     this.begun();
   }
 }
@@ -117,7 +117,7 @@ export class OwnWorlds {
     undo.focus();
   }
 
-  /** @param {Told} told */
+  /** @param {Reply} reply */
   fails({ wrong }) {
     $("own-wrong").hidden = !wrong;
     $("own-wrong").textContent = wrong ?? "";

@@ -1,4 +1,4 @@
-"""Where the robot may be instead of where it believes itself to be."""
+"""Hypotheses: places where the robot may be instead of at the pose estimate."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import viser
 from numpy.typing import NDArray
 
 from web.messages import Hypothesis
-from web.messages.told import share_words
+from web.messages.robot_status import share_words
 from web.viewer.fits import CellFit
 from web.viewer.primitives import meshes
 from web.viewer.primitives.labels import GHOST, LabelRoom, Pill, add_mesh

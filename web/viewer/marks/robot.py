@@ -104,7 +104,7 @@ LONGEST = 1.0  # plate units: a longer step is no driving
 
 
 class GhostRobot:
-    """The robot that believes its wheels alone: a pale robot with its fading, dashed path and its name."""
+    """The estimate by odometry alone: a pale robot with its fading, dashed path and its name."""
 
     def __init__(
         self, scene: viser.SceneApi, palette: Palette, name: str, half: tuple[float, float], room: LabelRoom,

@@ -21,7 +21,7 @@ from web.messages import (
     TaggedPlace,
     TimesLayer,
 )
-from web.messages.told import goal_told, seconds_words
+from web.messages.robot_status import goal_status, seconds_words
 from web.viewer.fits import DEPTH, WIDTH, MapFit, refit
 from web.viewer.marks.graph import ClosureMarks, Links, Nodes
 from web.viewer.marks.hypotheses import Hypotheses
@@ -163,7 +163,7 @@ class MapPlate(Plate):
         self.labels.fix(self, [((x, y, z), *ROBOT_SIZE)], ROBOT)
 
     def set_others(self, others: tuple[Hypothesis, ...]) -> None:
-        """Shows where the robot may be instead of where it believes itself to be."""
+        """Shows the hypotheses beside the pose estimate."""
         places = self.fit.to_plate(np.array([(other.x, other.y) for other in others]).reshape(-1, 2))
         headings = [other.heading_rad + self.fit.turn_rad for other in others]
         self._others.show(places, headings, [other.share for other in others])
@@ -243,8 +243,10 @@ def _in_steps(seconds: NDArray[np.float32], longest: float) -> NDArray[np.float3
 
 def promise(goal: Goal) -> str:
     """When it will be there, or how it stands with it."""
-    told = goal_told(goal)
-    return told.seconds or {"no way yet": "? s", "goal": "? s", "no way": "no way known"}.get(told.short, told.short)
+    status = goal_status(goal)
+    return status.seconds or {"no way yet": "? s", "goal": "? s", "no way": "no way known"}.get(
+        status.short, status.short
+    )
 
 
 def round_up(seconds: float) -> float:

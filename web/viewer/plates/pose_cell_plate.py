@@ -172,7 +172,7 @@ class PoseCellPlate(Plate):
             pill.show(letter, self.palette.on_goal, (float(at[0]), float(at[1]), float(at[2])))
 
     def set_others(self, others: Sequence[Hypothesis], shape: tuple[int, int, int]) -> None:
-        """Shows the states that stand for where the robot may be instead of where it believes itself to be."""
+        """Shows the states of the hypotheses beside the pose estimate."""
         self._others.show(others, CellFit(shape))
 
     def set_path(self, path: NDArray[np.float32], shape: tuple[int, int, int]) -> None:

@@ -1,4 +1,4 @@
-"""What the robot senses of the walls from above: its view, its sonars' echoes, and whether it would fit at a place."""
+"""The sensors seen from above: field of view, echoes of the sonars, and whether the robot would fit at a place."""
 
 from __future__ import annotations
 
@@ -39,9 +39,9 @@ def fan_of_view(walls: Array, pose: Pose, fov_rad: float, rays: int = RAYS) -> A
 
 
 def echoes_at(pose: Pose, angles_rad: NDArray[np.float32], ranges_m: NDArray[np.float32]) -> Array:
-    """(k, 2) where the sonars that heard an echo met something."""
-    heard = np.isfinite(ranges_m)
-    angles, reach = pose.heading_rad + angles_rad[heard], ranges_m[heard]
+    """(k, 2) where the sonars' beams met something."""
+    echoed = np.isfinite(ranges_m)
+    angles, reach = pose.heading_rad + angles_rad[echoed], ranges_m[echoed]
     xy = [pose.x + reach * np.cos(angles), pose.y + reach * np.sin(angles)]
     return np.column_stack(xy).astype(np.float64)
 

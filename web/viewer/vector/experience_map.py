@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from web.messages import Pose
-from web.messages.told import seconds_words, share_words
+from web.messages.robot_status import seconds_words, share_words
 from web.viewer.fits import DEPTH, WIDTH, MapFit, on_plate, refit, wheels_alone, wheels_path
 from web.viewer.marks.names import MOST
 from web.viewer.marks.route import pill_stops

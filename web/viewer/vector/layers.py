@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from web.messages import CellReport, ExperienceReport, Ghost, Pose, Spread, ViewReport, WhyReport
-from web.messages.told import seconds_words
+from web.messages.robot_status import seconds_words
 from web.viewer.fits import CellFit, MapFit, error_line, walls_in_map
 from web.viewer.marks import cell_marks, graph, robot
 from web.viewer.marks.inspected import linked_cells, links_of, spots_of
@@ -93,7 +93,7 @@ def draw_walls(sheet: Sheet, subject: Subject, fit: MapFit) -> list[Entry]:
 
 
 def draw_path(sheet: Sheet, palette: Palette, path: Points) -> None:
-    """The way that the wheels alone tell, (n, 2): dashed, its older parts faint. What leaves the field is left out."""
+    """The path by odometry alone, (n, 2): dashed, its older parts faint. What leaves the field is left out."""
     thin = meshes.thinned(path, STEP_PX / sheet.scale) if len(path) > 1 else path
     for k, some in enumerate(np.array_split(np.arange(len(thin)), SHADES)):
         part = thin[some[0] : some[-1] + 2] if len(some) else thin[:0]
@@ -105,7 +105,7 @@ def draw_path(sheet: Sheet, palette: Palette, path: Points) -> None:
 
 
 def draw_ghost(sheet: Sheet, palette: Palette, there: Pose, off_m: float, size: float) -> None:
-    """The robot that believes its wheels alone, and its name; beside the field only its name, at the edge. size: pixels."""
+    """The estimate by odometry alone, and its name; beside the field only its name, at the edge. size: pixels."""
     if off_m < robot.APART_M:
         return
     if sheet.inside([(there.x, there.y)])[0]:

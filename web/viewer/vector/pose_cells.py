@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from web.messages import GoalMemoryLayer, PoseCellLayer, Snap
-from web.messages.told import share_words
+from web.messages.robot_status import share_words
 from web.viewer.plates.pose_cell_plate import BELIEVES, LEAST_SHARE, NO_ACTIVITY, PACKETS, metres_words
 from web.viewer.primitives.palette import Palette
 from web.viewer.vector.layers import draw_beneath, draw_cell_marks, mark_among_cells

@@ -19,7 +19,7 @@ class Subject:
     judged: Judged
     overlaid: Overlaid
     brain: tuple[str, Rgb] | None  # one of two; None: there is one only
-    others: tuple[Hypothesis, ...]  # where the robot may be instead of where this brain believes it to be
+    others: tuple[Hypothesis, ...]  # hypotheses beside the pose estimate of this brain
 
     def sheet(self, title: str, words: str, box: tuple[float, float, float, float]) -> Sheet:
         """Of two brains, the name takes the title's place, as on the stage."""

@@ -77,7 +77,7 @@ def test_any_moment_is_as_it_was(name: str, request: pytest.FixtureRequest, monk
     session = played_session(request.getfixturevalue(name))
     history = History(session)
     past = TimeMachine(session, history)
-    session.on_order = past.told
+    session.on_order = past.note_order
     rng, were = random.Random(5), dict[int, tuple[object, ...]]()
     chosen = set(rng.sample(range(90 if name == "scans" else TICKS - 5), 20))
     while not session.source.over:

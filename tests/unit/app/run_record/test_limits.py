@@ -47,7 +47,7 @@ class Paper:
         self.log = LogWriter(self.feed, self.complaints.append)
 
     def tick(self, tick: int) -> None:
-        self.feed.tell_tick(tick, bytes(CHECKSUM_BYTES))
+        self.feed.enter_tick(tick, bytes(CHECKSUM_BYTES))
 
     def kept(self) -> KeptRun:
         self.log.finish()
@@ -115,7 +115,7 @@ def test_what_overtakes_is_kept_in_memory_and_in_the_file_alone(paper: Paper) ->
         for k in range(60):
             order = Order(tick, "drive", {"speed": 0.01 * (k % 7), "yaw_rate": 0.0})
             paper.feed.order(order)
-            machine.told(order)
+            machine.note_order(order)
         paper.tick(tick + 1)
     for _ in range(1000):
         paper.feed.order(Order(3, "cancel_goal", {}))

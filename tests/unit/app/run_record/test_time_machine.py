@@ -50,7 +50,7 @@ def test_any_moment_is_as_it_was() -> None:
     session = Session(load_world("living"), 3)
     history = History(session)
     machine = TimeMachine(session, history)
-    session.on_order = machine.told
+    session.on_order = machine.note_order
     rng, were = random.Random(4), dict[int, tuple[object, ...]]()
     for tick in range(700):
         if rng.random() < 0.02:

@@ -1,4 +1,4 @@
-"""One run of a lesson: its scene is set, what is shown is measured, and what came of it is told in words. The same lesson
+"""One round of a lesson: its scene is set, what is shown is measured, and the outcome is put into words. The same lesson
 and seed is the same run, bit for bit, on the page and in a test."""
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ from typing import Literal
 
 from app.protocol.conditions import Waiting
 from app.protocol.course import Course
-from app.protocol.lesson import Lesson, Measured, Plate, told
+from app.protocol.lesson import Lesson, Measured, Plate, fill_in
 from app.protocol.marks import Marks
 from app.protocol.measures import Measuring, reading_of
 from app.session import Session
@@ -30,7 +30,7 @@ def session_of(lesson: Lesson, number: int, seed: int | None = None) -> Session:
     return Session(world, scene.seed if seed is None else seed, config)
 
 
-class Performance:
+class LessonRound:
     """Call `advance` before the first tick and after each; `show` when the scene is set and it is to go on."""
 
     def __init__(self, lesson: Lesson, number: int, session: Session, history: History) -> None:
@@ -78,7 +78,7 @@ class Performance:
         return None
 
     def advance(self) -> None:
-        """Give the robot its orders for the next tick; note what has happened in the one before."""
+        """Give the orders for the next tick; note what has happened in the one before."""
         if self.phase == "scene":
             self.phase = "scene" if self._next() else "ready"
         elif self.phase == "showing":
@@ -114,7 +114,7 @@ class Performance:
         self.marks.end("it ended here")
 
     def place_of(self, what: Literal["the robot", "the belief"], plate: Plate) -> tuple[float, float]:
-        """Where the robot is, or where it believes itself to be: m, in the frame of the plate. On the office its belief is
+        """The true position or the estimate of it: m, in the frame of the plate. On the office the estimate is
         drawn as the map lay over the office when the showing began."""
         truth, robot = self.session.simulator.truth, self.session.brain.experience_map.robot
         if what == "the robot":
@@ -123,7 +123,7 @@ class Performance:
         return believed.x, believed.y
 
     def _begin_second(self, *, anew: bool) -> None:
-        """A second brain hears what the first hears. anew: both begin; otherwise it is a copy. ValueError says why it cannot."""
+        """Give a second brain the same sensor input. anew: both begin; otherwise it is a copy. ValueError says why it cannot."""
         pair = self.lesson.pair
         assert pair is not None
         self.session.begin_companion(pair.first, pair.second, pair.values, anew)
@@ -143,10 +143,10 @@ class Performance:
         return now_s >= self._until_s - 1e-9
 
     def _next(self) -> bool:
-        """Give the robot its orders for the next tick. False if there are none any more."""
+        """Give the orders for the next tick. False if there are none any more."""
         doing = next(self._ticks, None)
-        for moment in self.course.untold():
-            if moment.kind != "recovered":  # the log tells of it anyway
+        for moment in self.course.new_moments():
+            if moment.kind != "recovered":  # which is in the log already
                 self.history.log.note("lesson" if moment.kind in ("step", "end") else moment.kind, moment.words)
         self.doing = self.doing if doing is None else doing
         return doing is not None
@@ -159,40 +159,40 @@ def shown_s(lesson: Lesson) -> float:
     return min(lesson.show.limit_s, each) * lesson.round_count + own
 
 
-def perform(lesson: Lesson, seed: int | None = None) -> list[Performance]:
+def run_lesson(lesson: Lesson, seed: int | None = None) -> list[LessonRound]:
     """Every round of a lesson, without a page, to its end."""
-    return [perform_round(lesson, number, seed) for number in range(lesson.round_count)]
+    return [run_round(lesson, number, seed) for number in range(lesson.round_count)]
 
 
-def perform_round(lesson: Lesson, number: int, seed: int | None = None) -> Performance:
-    return finish(set_scene(lesson, number, seed))
+def run_round(lesson: Lesson, number: int, seed: int | None = None) -> LessonRound:
+    return show_to_end(set_scene(lesson, number, seed))
 
 
-def set_scene(lesson: Lesson, number: int = 0, seed: int | None = None) -> Performance:
+def set_scene(lesson: Lesson, number: int = 0, seed: int | None = None) -> LessonRound:
     session = session_of(lesson, number, seed)
-    performance = Performance(lesson, number, session, History(session))
-    performance.advance()
-    _run_until(performance, "ready")
-    return performance
+    round_ = LessonRound(lesson, number, session, History(session))
+    round_.advance()
+    _run_until(round_, "ready")
+    return round_
 
 
-def finish(performance: Performance) -> Performance:
+def show_to_end(round_: LessonRound) -> LessonRound:
     """Show it to its end."""
-    performance.show()
-    _run_until(performance, "over")
-    return performance
+    round_.show()
+    _run_until(round_, "over")
+    return round_
 
 
-def _run_until(performance: Performance, phase: Phase) -> None:
-    while performance.phase != phase:
-        performance.session.tick()
-        performance.history.watch()
-        performance.advance()
+def _run_until(round_: LessonRound, phase: Phase) -> None:
+    while round_.phase != phase:
+        round_.session.tick()
+        round_.history.watch()
+        round_.advance()
 
 
-def rounds_of(performances: Sequence[Performance]) -> list[tuple[str, Measured]]:
+def measured_in(rounds: Sequence[LessonRound]) -> list[tuple[str, Measured]]:
     """Label and values of each round that is over, or of each of two brains."""
-    return [found for each in performances for found in each.found]
+    return [found for each in rounds for found in each.found]
 
 
 @dataclass(frozen=True, slots=True)
@@ -201,15 +201,15 @@ class LessonReport:
 
     lines: tuple[str, ...]
     kept: bool
-    performances: tuple[Performance, ...]
+    rounds: tuple[LessonRound, ...]
 
 
 def report_of(lesson: Lesson, seed: int | None = None) -> LessonReport:
     """Run a lesson and judge it."""
-    performances = perform(lesson, seed)
-    found = rounds_of(performances)
+    rounds = run_lesson(lesson, seed)
+    found = measured_in(rounds)
     lines, kept = (
-        [f"{lesson.title}, seed {lesson.scene.seed if seed is None else seed}", told(lesson.outcome, found)],
+        [f"{lesson.title}, seed {lesson.scene.seed if seed is None else seed}", fill_in(lesson.outcome, found)],
         True,
     )
     ask = lesson.predict
@@ -219,7 +219,7 @@ def report_of(lesson: Lesson, seed: int | None = None) -> LessonReport:
         kept = len(right) == 1
         lines.append(f"right prediction ({ask.finding.text} = {value:g}): {'; '.join(right) or 'none of the options'}")
     elif ask.draw is not None:
-        x, y = performances[-1].place_of(ask.draw, ask.plate)
+        x, y = rounds[-1].place_of(ask.draw, ask.plate)
         lines.append(f"{ask.draw} ends at ({x:.2f}, {y:.2f}) on the {ask.plate}")
     for promise in lesson.promise:
         value = promise.finding.of(found)
@@ -227,12 +227,12 @@ def report_of(lesson: Lesson, seed: int | None = None) -> LessonReport:
         kept = kept and holds
         bounds = f"[{promise.at_least:g}, {promise.below:g})"
         lines.append(f"{'kept' if holds else 'BROKEN'}: {promise.finding.text} = {value:g}, promised {bounds}")
-    for performance in performances:
-        assert performance.values is not None
-        for label, values in performance.found:
+    for round_ in rounds:
+        assert round_.values is not None
+        for label, values in round_.found:
             told_all = ", ".join(
                 f"{name} {reading_of(name).shown(value)}" for name, value in values.items() if value == value
             )
             lines.append(f"{label or 'measured'}: {told_all}")
-        lines.append(f"state hash {performance.session.state_hash()}")
-    return LessonReport(tuple(lines), kept, tuple(performances))
+        lines.append(f"state hash {round_.session.state_hash()}")
+    return LessonReport(tuple(lines), kept, tuple(rounds))

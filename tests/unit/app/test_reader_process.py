@@ -15,8 +15,8 @@ import numpy as np
 import psutil
 import pytest
 
-from app.recordings.apart import Most, ReadApart
 from app.recordings.opening import open_recording
+from app.recordings.reader_process import Most, ReaderProcess
 from app.recordings.recording import Moment
 from tests.patience import PATIENCE_S
 from tests.recordings import FORMATS
@@ -38,7 +38,7 @@ def told_by(moment: Moment, picture: bool) -> list[object]:
 @pytest.mark.parametrize("name", ["mp4", "carmen", "mcap"])
 def test_moments_are_the_same_as_here_whoever_else_reads(tmp_path: Path, name: str) -> None:
     path = made(tmp_path, name)
-    here, apart = open_recording(path), ReadApart(path)
+    here, apart = open_recording(path), ReaderProcess(path)
     assert apart.about == here.about
     some = zip(here.moments(lambda n: n >= 3), apart.moments(lambda n: n >= 3), strict=True)
     for k, (one, other) in enumerate(zip(here.moments(), apart.moments(), strict=True)):
@@ -62,19 +62,19 @@ def endless(path: Path) -> Path:
 def test_reading_without_an_end_is_ended_and_can_be_called_off(tmp_path: Path) -> None:
     bag, off = endless(tmp_path / "bag.db3"), threading.Event()
     with pytest.raises(ValueError, match=r"bag\.db3: more than 1 s of computing"):
-        ReadApart(bag, most=Most(cpu_s=1.0, cpu_s_a_byte=0.0))
+        ReaderProcess(bag, most=Most(cpu_s=1.0, cpu_s_a_byte=0.0))
     threading.Timer(0.2, off.set).start()
     with pytest.raises(ValueError, match="called off"):
-        ReadApart(bag, called_off=off)
+        ReaderProcess(bag, called_off=off)
 
 
 def test_too_much_memory_is_the_readers_fault_alone(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match=r"MemoryError|memory"):
-        ReadApart(made(tmp_path, "mcap"), most=Most(memory=1 << 20))
+        ReaderProcess(made(tmp_path, "mcap"), most=Most(memory=1 << 20))
 
 
 def test_more_moments_than_a_run_has_ticks_are_refused_where_they_begin(tmp_path: Path) -> None:
-    playing = ReadApart(made(tmp_path, "carmen"), most=Most(moments=3)).moments(lambda _: False)
+    playing = ReaderProcess(made(tmp_path, "carmen"), most=Most(moments=3)).moments(lambda _: False)
     told = list[Moment]()
     with pytest.raises(ValueError, match="has more than 3 moments; play a part of it"):
         told.extend(playing)
@@ -83,7 +83,7 @@ def test_more_moments_than_a_run_has_ticks_are_refused_where_they_begin(tmp_path
 
 def test_a_reader_that_is_killed_is_said_and_the_next_reading_has_another(tmp_path: Path) -> None:
     others = psutil.Process().children()
-    recording = ReadApart(made(tmp_path, "mcap"))
+    recording = ReaderProcess(made(tmp_path, "mcap"))
     (reader,) = [child for child in psutil.Process().children() if child not in others]
     moments = recording.moments(lambda _number: True)
     next(moments)
@@ -98,7 +98,7 @@ def test_what_was_unpacked_goes_with_the_reader(tmp_path: Path, monkeypatch: pyt
     (tmp_path / "temporary").mkdir()
     made(tmp_path, "tub")
     packed = shutil.make_archive(str(tmp_path / "packed"), "gztar", tmp_path / FORMATS["tub"][0])
-    recording = ReadApart(Path(packed))
+    recording = ReaderProcess(Path(packed))
     assert len(list(recording.moments())) == recording.about.moments
     assert [*(tmp_path / "temporary").glob("*/*")]
     del recording
@@ -110,7 +110,7 @@ def test_the_reader_ends_with_whoever_asked(tmp_path: Path) -> None:
     """Also with one that is killed, and while it reads without an end. Its temporary folder goes, too."""
     bag, temporary = endless(tmp_path / "bag.db3"), tmp_path / "temporary"
     temporary.mkdir()
-    code = f"from pathlib import *; from app.recordings.apart import ReadApart; ReadApart(Path({str(bag)!r}))"
+    code = f"from pathlib import *; from app.recordings.reader_process import ReaderProcess; ReaderProcess(Path({str(bag)!r}))"
     environment = {**os.environ, "TMPDIR": str(temporary)}
     asker = subprocess.Popen([sys.executable, "-c", code], cwd=Path(__file__).parents[3], env=environment)
     try:

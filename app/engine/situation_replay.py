@@ -1,12 +1,12 @@
-"""A situation that was opened: its orders are given at their ticks, and told on the timeline, up to its moment; there the
-hashes are compared."""
+"""The replay of a situation that was opened: its orders are given at their ticks, and noted on the timeline, up to its moment;
+there the hashes are compared."""
 
 from __future__ import annotations
 
 from functools import partial
 from typing import TYPE_CHECKING
 
-from app.engine.guide import Guide
+from app.engine.supervisor import Supervisor
 from app.orders import Order, carry_out
 from app.run_record.record import replay
 from app.run_record.situation import Situation
@@ -54,8 +54,8 @@ def _by_the_run(_session: Session, _watch: object) -> None:
     """The run that is open runs the ticks."""
 
 
-class PlayedAhead(Guide):
-    """Call `advance` at the beginning and after each tick. before: the run that waits until this one is at its moment."""
+class SituationReplay(Supervisor):
+    """Call `after_tick` at the beginning and after each tick. before: the run that waits until this one is at its moment."""
 
     def __init__(
         self, situation: Situation, session: Session, log: EventLog, before: tuple[Run, TimeTravel, World] | None
@@ -68,7 +68,7 @@ class PlayedAhead(Guide):
         self._replay = replay(session, situation.orders_after, situation.tick, give=give, tick=_by_the_run)
         next(self._replay)
 
-    def advance(self) -> None:
+    def after_tick(self) -> None:
         """Give the orders of the tick that has just been run; at the moment, see whether it is the same."""
         if self.state != "playing":
             return

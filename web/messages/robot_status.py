@@ -2,7 +2,7 @@
 
 Header, flag, panel, events and what is read aloud take their words from here, so that none can contradict another. A robot
 that is lost does not know where it is: it has not arrived, it believes to have; and no way is missing before it knows from
-where. A goal to which nobody drives waits. tests/unit/web/test_told.py goes through all facts.
+where. A goal to which nobody drives waits. tests/unit/web/test_robot_status.py goes through all facts.
 """
 
 from __future__ import annotations
@@ -79,7 +79,7 @@ def goal_meaning(state: GoalState, *, lost: bool, followed: bool) -> GoalMeaning
     return _LOST[state] if lost else state
 
 
-def robot_told(facts: Facts) -> Chip:
+def robot_status(facts: Facts) -> Chip:
     """What the robot does, or why it does not: what counts most."""
     if facts.past:
         return Chip("clock", "past", "the past, played" if facts.running else "the past")
@@ -105,7 +105,7 @@ def robot_told(facts: Facts) -> Chip:
     return Chip("compass", "good", "exploring")
 
 
-def goal_told(goal: Goal) -> GoalChip:
+def goal_status(goal: Goal) -> GoalChip:
     """How it stands with the goal."""
     meaning = goal_meaning(goal.state, lost=goal.lost, followed=goal.followed)
     icon, words, short = _GOALS[meaning]

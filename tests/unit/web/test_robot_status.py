@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from web.messages import Goal, GoalState
-from web.messages.told import Facts, goal_meaning, goal_told, robot_told
+from web.messages.robot_status import Facts, goal_meaning, goal_status, robot_status
 
 STATES: tuple[GoalState, ...] = get_args(GoalState)
 MODES: tuple[Literal["explore", "manual", "goal", "recorded"], ...] = ("explore", "manual", "goal", "recorded")
@@ -29,14 +29,14 @@ def test_the_robot_and_its_goal_never_contradict_each_other() -> None:
     flags = [dict(zip(FLAGS, on, strict=True)) for on in product((False, True), repeat=len(FLAGS))]
     for packets, mode, state, on in product((1, 2), MODES, (None, *STATES), flags):
         facts = Facts(packets=packets, mode=mode, goal=state, **on)
-        robot = robot_told(facts)
+        robot = robot_status(facts)
         stands_still = facts.past or facts.faulty or facts.over or not facts.running
         tells_of_something_else = facts.past or facts.faulty or facts.over or (facts.played_ahead and not facts.running)
         assert ("lost" in robot.words) is (facts.lost and not tells_of_something_else)
         if state is None:
             assert "goal" not in robot.words
             continue
-        goal = goal_told(a_goal(state, lost=facts.lost, followed=mode == "goal"))
+        goal = goal_status(a_goal(state, lost=facts.lost, followed=mode == "goal"))
         if facts.lost:  # it knows neither that it is there nor that no way leads there
             assert goal.short not in ("arrived", "no way", "no way yet")
             assert goal.words not in ("at the goal", "no way to the goal", "looking for a way", "going to the goal")
@@ -51,7 +51,7 @@ def test_the_robot_and_its_goal_never_contradict_each_other() -> None:
 def test_each_meaning_has_words_of_its_own() -> None:
     cases = list(product(STATES, (False, True), (False, True)))
     meanings = {goal_meaning(state, lost=lost, followed=followed) for state, lost, followed in cases}
-    words = {goal_told(a_goal(state, lost=lost, followed=followed)).words for state, lost, followed in cases}
+    words = {goal_status(a_goal(state, lost=lost, followed=followed)).words for state, lost, followed in cases}
     assert len(words) == len(meanings) == len(STATES) + 4
 
 
@@ -78,7 +78,7 @@ LOST: dict[str, Any] = {"lost": True, "goal": "tracking", "mode": "goal"}
     ],
 )
 def test_what_counts_most_is_said(facts: Facts, words: str) -> None:
-    assert robot_told(facts).words == words
+    assert robot_status(facts).words == words
 
 
 @pytest.mark.parametrize(
@@ -94,5 +94,5 @@ def test_what_counts_most_is_said(facts: Facts, words: str) -> None:
     ],
 )
 def test_how_far_and_how_long_is_told_while_there_is_a_way_to_go(goal: Goal, metres: str, seconds: str) -> None:
-    told = goal_told(goal)
-    assert (told.metres, told.seconds) == (metres, seconds)
+    status = goal_status(goal)
+    assert (status.metres, status.seconds) == (metres, seconds)

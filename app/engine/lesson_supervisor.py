@@ -1,5 +1,5 @@
-"""One run of a lesson in the engine: its scene, what is shown, and the free play afterwards. `Teaching` is one for all runs
-of a lesson that is being given: its rounds, what was predicted, what came of it."""
+"""One round of a lesson in the engine: its scene, what is shown, and the free play afterwards. `Teaching` is one for all rounds
+of a lesson that is being given: which round it is, the predictions, the outcome."""
 
 from __future__ import annotations
 
@@ -7,16 +7,16 @@ import math
 from dataclasses import dataclass, field
 
 from app.config import Config
-from app.engine.guide import Guide
-from app.protocol.lesson import Lesson, Measured, told
-from app.protocol.performance import Performance
+from app.engine.supervisor import Supervisor
+from app.protocol.lesson import Lesson, Measured, fill_in
+from app.protocol.lesson_round import LessonRound
 from app.session import Session
 from app.views.history import History
 from web.messages import Inspect, LessonOutcome, LessonPrediction, LessonState, LessonView, LessonVotes
 
 
-class LessonRun(Guide):
-    """Call `before_tick` before each tick and `advance` after it. What is shown is the same, bit for bit, without a page."""
+class LessonSupervisor(Supervisor):
+    """Call `before_tick` before each tick and `after_tick` after it. What is shown is the same, bit for bit, without a page."""
 
     def __init__(
         self, teaching: Teaching, session: Session, history: History, *, at_once: bool = False, branch: bool = False
@@ -25,17 +25,16 @@ class LessonRun(Guide):
         its past, and is played freely. ValueError: the lesson does not fit its world.
         """
         self.teaching, self._session, self._history = teaching, session, history
-        self._performance = None if branch else Performance(teaching.lesson, teaching.number, session, history)
+        self._round = None if branch else LessonRound(teaching.lesson, teaching.number, session, history)
         self.state: LessonState = "sandbox" if branch else "scene"
         self.altered, self._ahead = branch, not branch
-        self.pauses = False  # it wants to be looked at in peace
         self.inspects: Inspect | None = None  # what is to be inspected now
         self._at_once, self._doing = at_once, "another branch: play freely" if branch else ""
         if branch:
             return
         if teaching.number == 0:
             history.log.note("lesson", f"{teaching.lesson.title}: the scene is set")
-        self.advance()
+        self.after_tick()
 
     @property
     def runs_ahead(self) -> bool:
@@ -48,7 +47,7 @@ class LessonRun(Guide):
     @property
     def round_over(self) -> bool:
         """Whether it is over, and another round follows."""
-        return self.state == "predict" and self._performance is not None and self._performance.phase == "over"
+        return self.state == "predict" and self._round is not None and self._round.phase == "over"
 
     def next_round(self) -> Teaching:
         self.teaching.number += 1
@@ -65,33 +64,33 @@ class LessonRun(Guide):
             if self._session.pilot.mode == "manual":
                 self._session.set_mode("explore")
 
-    def advance(self) -> None:
-        performance = self._performance
-        if performance is None or self.state not in ("scene", "showing"):
+    def after_tick(self) -> None:
+        round_ = self._round
+        if round_ is None or self.state not in ("scene", "showing"):
             return
         try:
-            performance.advance()
+            round_.advance()
         except ValueError as error:  # what it needs is no longer there
             self._break_off(f"it cannot go on: {error}")
             return
-        if performance.phase == "ready" and self.state == "scene":
+        if round_.phase == "ready" and self.state == "scene":
             self._ahead, self.state = False, "predict"
             if self._at_once:
                 self.show()
             else:
-                self.pauses = True
-        elif performance.phase == "over":
-            self._over(performance)
+                self.pause_requested = True
+        elif round_.phase == "over":
+            self._over(round_)
 
     def show(self) -> None:
         """Let it happen. ValueError says why that cannot be now."""
-        if self.state != "predict" or self._performance is None:
+        if self.state != "predict" or self._round is None:
             raise ValueError(f"the lesson is in the state {self.state!r}: what it shows begins from 'predict'")
-        label = f" ({self._performance.label})" if self._performance.label else ""
+        label = f" ({self._round.label})" if self._round.label else ""
         self.state = "showing"
         self._history.log.note("lesson", f"{self.teaching.lesson.title}: it happens{label}")
         try:
-            self._performance.show()
+            self._round.show()
         except ValueError as error:
             self._break_off(f"it cannot go on: {error}")
 
@@ -101,7 +100,7 @@ class LessonRun(Guide):
     # ------------------------------------------------------------ what others do
 
     def ordered(self, why: str) -> None:
-        """Somebody has given the robot orders: it has one master only, so that nothing more is shown."""
+        """A user has given the robot orders: nothing more is shown."""
         if self.state in ("scene", "showing", "predict"):
             self.altered = True
             self._break_off(why)
@@ -118,11 +117,11 @@ class LessonRun(Guide):
     # ------------------------------------------------------------ looking
 
     def view(self) -> LessonView:
-        teaching, performance = self.teaching, self._performance
+        teaching, round_ = self.teaching, self._round
         lesson = teaching.lesson
-        marks = performance.marks.view() if performance is not None and performance.marks is not None else ()
+        marks = round_.marks.view() if round_ is not None and round_.marks is not None else ()
         return LessonView(
-            lesson.name, lesson.title, self.state, self._what, None if performance is None else performance.progress,
+            lesson.name, lesson.title, self.state, self._what, None if round_ is None else round_.progress,
             teaching.number + 1, lesson.round_count, lesson.rounds[teaching.number].label if lesson.rounds else "",
             teaching.seed, teaching.prediction, teaching.votes, teaching.outcome, marks, self.altered,
             None if lesson.predict.draw is None else lesson.predict.plate,
@@ -130,32 +129,32 @@ class LessonRun(Guide):
 
     @property
     def _what(self) -> str:
-        if self._performance is None or self._doing:
+        if self._round is None or self._doing:
             return self._doing
         if self.round_over:
             following = self.teaching.lesson.rounds[self.teaching.number + 1].label
-            return f"{self._performance.label} is over; next: {following}"
+            return f"{self._round.label} is over; next: {following}"
         return {
-            "scene": f"the scene is set: {self._performance.doing}",
+            "scene": f"the scene is set: {self._round.doing}",
             "predict": "waits for a prediction",
-            "showing": self._performance.doing,
+            "showing": self._round.doing,
             "compared": "prediction and outcome are compared",
             "sandbox": "play freely",
         }[self.state]
 
     # ------------------------------------------------------------ inside
 
-    def _over(self, performance: Performance) -> None:
+    def _over(self, round_: LessonRound) -> None:
         teaching, log = self.teaching, self._history.log
-        teaching.over(performance)
-        self.pauses = True
+        teaching.over(round_)
+        self.pause_requested = True
         if teaching.outcome is None:
             self.state = "predict"
-            log.note("lesson", f"{teaching.lesson.title}: {performance.label} is over")
+            log.note("lesson", f"{teaching.lesson.title}: {round_.label} is over")
             return
         self.state = "compared"
         log.note("lesson", teaching.outcome.words)
-        kind, marks = teaching.lesson.show.explain, performance.marks
+        kind, marks = teaching.lesson.show.explain, round_.marks
         event = None if kind is None or marks is None else marks.last_event(kind)
         self.inspects = None if event is None else Inspect(type="inspect", event=event)
 
@@ -216,22 +215,22 @@ class Teaching:
                 points.append((vote.x, vote.y))
         return LessonVotes(tuple(counts), tuple(points))
 
-    def over(self, performance: Performance) -> None:
+    def over(self, round_: LessonRound) -> None:
         """A round is over; after the last one, prediction and outcome are compared."""
-        assert performance.values is not None
-        self._found += performance.found
+        assert round_.values is not None
+        self._found += round_.found
         if self.is_last:
-            self.outcome = self._compared(performance)
+            self.outcome = self._compared(round_)
 
-    def _compared(self, performance: Performance) -> LessonOutcome:
+    def _compared(self, round_: LessonRound) -> LessonOutcome:
         lesson, ask, said = self.lesson, self.lesson.predict, self.prediction
-        words = told(lesson.outcome, self._found)
+        words = fill_in(lesson.outcome, self._found)
         if ask.finding is not None and ask.options:
             value = ask.finding.of(self._found)
             choice = next((k for k, option in enumerate(ask.options) if option.holds(value)), None)
             right = None if said is None else said.choice == choice
             return LessonOutcome(words, lesson.because, right, choice=choice)
-        x, y = performance.place_of(ask.draw or "the robot", ask.plate)
+        x, y = round_.place_of(ask.draw or "the robot", ask.plate)
         if said is None or said.x is None or said.y is None:
             return LessonOutcome(words, lesson.because, None, x=x, y=y)
         away_m = math.dist((said.x, said.y), (x, y))

@@ -3,9 +3,9 @@
 A file may be made so that reading it never ends or takes all memory: a view of SQLite without an end, a picture of billions
 of pixels, a bomb of zeros. Only the process that reads it ends by that; the program says so in a sentence and goes on. It
 can be called off, and it ends with whoever asked for it, however that ends. So does its temporary folder, where archives are
-unpacked. test_recordings_apart.py.
+unpacked. test_reader_process.py.
 
-The program sends what it wants, the reader answers each time with one thing: what the recording says of itself, a few
+The program sends requests, the reader answers each time with one thing: the description of the recording, a few
 moments, or the sentence of a ValueError.
 """
 
@@ -50,16 +50,16 @@ class Most(NamedTuple):
     moments: int = TICKS  # each is a tick of the run that plays it
 
 
-class Wish(NamedTuple):
-    """What is asked of the reader."""
+class ReadRequest(NamedTuple):
+    """What the program asks of the reader."""
 
     reading: int  # its number
     goal: int  # the number of the first moment from here on whose picture is wanted; those before come without
-    all: bool  # every picture is wanted, and the recording is to tell what is wrong with them
+    all: bool  # every picture is wanted, and the recording is to report what is wrong with them
     over: tuple[int, ...]  # readings that are not needed any more
 
 
-class ReadApart:
+class ReaderProcess:
     """A recording that another process reads. To be used from several threads; what they ask for comes in turn."""
 
     def __init__(
@@ -74,15 +74,15 @@ class ReadApart:
         self._first = os.path.abspath(path), opening or Opening(), self._most
         self._lock = threading.Lock()
         self._begin()
-        self.about = cast("About", self._told(self._first, called_off))
+        self.about = cast("About", self._ask(self._first, called_off))
 
     def moments(self, wanted: Wanted = every) -> Iterator[Moment]:
         """As every recording. ValueError: the reader was ended; the next reading begins with a new one."""
         with self._lock:
             if self._process.poll() is not None:
                 self._begin()
-                self.about = cast("About", self._told(self._first))
-            reader, number = self._process, cast("int", self._told(None))
+                self.about = cast("About", self._ask(self._first))
+            reader, number = self._process, cast("int", self._ask(None))
         following, over = 0, None
         try:
             while over is None:
@@ -90,8 +90,8 @@ class ReadApart:
                 with self._lock:
                     if self._process is not reader:
                         raise ValueError(f"{self._name}: it is not being read any more")
-                    wish = Wish(number, goal, wanted is every, self._left())
-                    moments, over = cast("Moments", self._told(wish))
+                    request = ReadRequest(number, goal, wanted is every, self._left())
+                    moments, over = cast("Moments", self._ask(request))
                 self.about = over or self.about
                 following += len(moments)
                 yield from moments
@@ -106,12 +106,12 @@ class ReadApart:
         folder = tempfile.mkdtemp(prefix="ratslam-reader-")
         with theirs:
             self._process = subprocess.Popen(
-                command_of("app.recordings.apart", str(theirs.fileno()), folder), env={**os.environ, "TMPDIR": folder},
+                command_of("app.recordings.reader_process", str(theirs.fileno()), folder), env={**os.environ, "TMPDIR": folder},
                 stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
                 pass_fds=(theirs.fileno(),), process_group=0,
             )  # fmt: skip
         self._wire = Connection(ours.detach())
-        # Readings that are over, told with the next wish: a generator may be closed at any moment, in any thread.
+        # Readings that are over, sent with the next request: a generator may be closed at any moment, in any thread.
         self._over = list[int]()
         weakref.finalize(self, _end, self._process, self._wire, folder)
 
@@ -119,10 +119,10 @@ class ReadApart:
         over, self._over = tuple(self._over), []
         return over
 
-    def _told(self, wish: object, called_off: threading.Event | None = None) -> object:
-        """The answer to a wish. ValueError: the reader's own, or that it has ended."""
+    def _ask(self, request: object, called_off: threading.Event | None = None) -> object:
+        """The answer to a request. ValueError: the reader's own, or that it has ended."""
         try:
-            self._wire.send(wish)
+            self._wire.send(request)
             while not self._wire.poll(POLL_S):
                 if called_off is not None and called_off.is_set():
                     self._process.kill()
@@ -157,21 +157,21 @@ def _why_ended(process: subprocess.Popen[bytes], most: Most) -> str:
 def main(descriptor: int, folder: str) -> NoReturn:
     """Answer what comes, until the other end is closed. folder: its temporary one."""
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-    wire, wishes = Connection(descriptor), queue.SimpleQueue[object]()
-    threading.Thread(target=_listen, args=(wire, wishes, folder), daemon=True).start()
-    path, opening, most = cast("tuple[str, Opening, Most]", wishes.get())
+    wire, requests = Connection(descriptor), queue.SimpleQueue[object]()
+    threading.Thread(target=_listen, args=(wire, requests, folder), daemon=True).start()
+    path, opening, most = cast("tuple[str, Opening, Most]", requests.get())
     resource.setrlimit(resource.RLIMIT_DATA, (most.memory, most.memory))
     reader = _Reader(Path(path), opening, most)
     wire.send(_answer(path, reader.opened))
     while True:
-        wire.send(_answer(path, partial(reader.to, wishes.get())))
+        wire.send(_answer(path, partial(reader.to, requests.get())))
 
 
-def _listen(wire: Connection, wishes: queue.SimpleQueue[object], folder: str) -> None:
+def _listen(wire: Connection, requests: queue.SimpleQueue[object], folder: str) -> None:
     """By a thread of its own, so that a reading without an end does not outlive who asked for it."""
     try:
         while True:
-            wishes.put(wire.recv())
+            requests.put(wire.recv())
     except (OSError, EOFError):
         shutil.rmtree(folder, ignore_errors=True)  # whoever asked may have been killed
         os._exit(0)
@@ -203,17 +203,17 @@ class _Reader:
         self._recording = open_recording(self._path, self._opening)
         return self._recording.about
 
-    def to(self, wish: object) -> int | Moments:
-        """wish: None begins a reading, whose number is told."""
+    def to(self, request: object) -> int | Moments:
+        """request: None begins a reading, whose number is the answer."""
         _allow(self._most.cpu_s)
-        if not isinstance(wish, Wish):
+        if not isinstance(request, ReadRequest):
             self._readings.append(_Reading(self._recording, self._most.moments))
             return len(self._readings) - 1
-        for number in wish.over:
+        for number in request.over:
             self._readings[number] = None
-        reading = self._readings[wish.reading]
+        reading = self._readings[request.reading]
         assert reading is not None
-        moments = reading.next(wish)
+        moments = reading.next(request)
         return moments, None if moments else self._recording.about
 
 
@@ -225,23 +225,23 @@ class _Reading:
         self._goal = self._following = 0  # the first picture that is wanted, the number of the moment that comes next
         self._moments: Iterator[Moment] | None = None
 
-    def next(self, wish: Wish) -> list[Moment]:
+    def next(self, request: ReadRequest) -> list[Moment]:
         """A few moments. None of them: that was all."""
-        self._goal = wish.goal
+        self._goal = request.goal
         if self._moments is None:
-            self._moments = self._recording.moments(every if wish.all else lambda number: number >= self._goal)
-        told, size = list[Moment](), 0
+            self._moments = self._recording.moments(every if request.all else lambda number: number >= self._goal)
+        found, size = list[Moment](), 0
         for moment in self._moments:
-            told.append(moment)
+            found.append(moment)
             size += 0 if moment.image is None else moment.image.nbytes
             self._following += 1
             if self._following > self._most:
                 raise ValueError(
                     f"{self._recording.about.name} has more than {self._most:,} moments; play a part of it"
                 )
-            if len(told) == AT_ONCE or size > BYTES_AT_ONCE or (self._following > wish.goal and not wish.all):
+            if len(found) == AT_ONCE or size > BYTES_AT_ONCE or (self._following > request.goal and not request.all):
                 break
-        return told
+        return found
 
 
 def _allow(seconds: float) -> None:
@@ -251,6 +251,6 @@ def _allow(seconds: float) -> None:
 
 
 if __name__ == "__main__":  # in the reader's process; what comes and goes there is of the module by its own name
-    from app.recordings.apart import main as answer
+    from app.recordings.reader_process import main as answer
 
     answer(int(sys.argv[1]), sys.argv[2])
