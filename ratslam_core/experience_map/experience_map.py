@@ -22,9 +22,9 @@ from ratslam_core.experience_map.temporal_map import TemporalMap
 from ratslam_core.extensions.evidence import PRIOR, Belief, Evidence
 from ratslam_core.extensions.exact_solver import ExactSolver
 from ratslam_core.extensions.familiar_ground import FamiliarGround, NewGround
-from ratslam_core.extensions.islands import Islands, Merge
 from ratslam_core.extensions.odometry_edges import NoOdometryEdges, OdometryEdges, open_way_m, soften
 from ratslam_core.extensions.pose_filter import SNAP, PoseFilter
+from ratslam_core.extensions.submaps import Merge, Submaps
 from ratslam_core.params import EvidenceParams, ExperienceMapParams
 from ratslam_core.parts import LocalViewPart, Optimiser, Witness
 from ratslam_core.pose_graph.pose_graph import PoseGraph
@@ -44,7 +44,7 @@ class Senses(NamedTuple):
     witness: Witness | None = None  # a look that it does not confirm is none
 
 
-@kind("experience map/7")
+@kind("experience map/8")
 class ExperienceMap(PoseGraph):
     """Experiences, links and a robot among them. `step` finds or makes the active experience and learns the transition to it."""
 
@@ -64,7 +64,7 @@ class ExperienceMap(PoseGraph):
         self.transitions.reuses = isinstance(self.ground, FamiliarGround)
         self.evidence = Evidence(evidence or EvidenceParams(), cell_m)
         self.pose_filter = PoseFilter(cell_m)
-        self.islands = Islands()
+        self.submaps = Submaps()
         self._temporal_map = TemporalMap(self)
         self._edges = OdometryEdges() if self.params.odometry_edges else NoOdometryEdges()
         self.here = -1  # the experience at which the map is being learnt
@@ -100,7 +100,7 @@ class ExperienceMap(PoseGraph):
         for _ in range(beats):
             self._move(odometry)
         if self.evidence.known and views is not None and seen.view >= 0:
-            self.evidence.observe(self, views, self.islands.current)
+            self.evidence.observe(self, views, self.submaps.current)
         if seen.recruited:
             self.forget_view(seen.view)
         before = self._departure()
@@ -166,11 +166,11 @@ class ExperienceMap(PoseGraph):
         self.pose_filter.forget(CARRIED * self.cell_m)
         self._edges.forget()
         self.ground.forget()
-        if self.params.islands:
-            island, robot = self.islands.current, self.robot_here
+        if self.params.submaps:
+            submap, robot = self.submaps.current, self.robot_here
             sure |= self.carried and self.evidence.sure
-            self.islands.begin()
-            self.evidence.begin(robot, island, len(self), sure=sure)
+            self.submaps.begin()
+            self.evidence.begin(robot, submap, len(self), sure=sure)
         self.carried = True
 
     def declare_found(self) -> None:
@@ -236,7 +236,7 @@ class ExperienceMap(PoseGraph):
         self._travel = self._travel.compose(moved)
         self._leg.add(moved, odometry)
         self.evidence.move(odometry)
-        self.islands.move(way_m / self.cell_m, self.evidence.params.unnoticed)
+        self.submaps.move(way_m / self.cell_m, self.evidence.params.unnoticed)
         self._edges.move(moved, odometry)
         self._driven_m += way_m
         self._driving_s += odometry.dt * (odometry.speed != 0)
@@ -263,7 +263,7 @@ class ExperienceMap(PoseGraph):
         """Log odds of a place, before anything speaks for it: how far odometry may have led astray since the robot was there,
         or how sure it was not carried unnoticed, or merged where it was not.
         """
-        if not self.evidence.in_doubt or self.island_of[experience] != self.islands.current:
+        if not self.evidence.in_doubt or self.submap_of[experience] != self.submaps.current:
             return PRIOR
         return -min(self._against_drift(experience, pose), self._against_error(experience))
 
@@ -277,7 +277,7 @@ class ExperienceMap(PoseGraph):
 
     def _merge_before(self, experience: int) -> Merge | None:
         """The merge that put the robot where it is on the map that this experience was of before; None if it cannot be undone."""
-        merge = self.islands.merge
+        merge = self.submaps.last_merge
         return merge if merge is not None and experience < merge.first else None
 
     def _off(self, pose: Pose2) -> float:
@@ -289,7 +289,7 @@ class ExperienceMap(PoseGraph):
         [ours] One where it cannot be puts it in doubt. When evidence has won, it is one beyond reach, perhaps on another
         submap, and the two were merged.
         """
-        if not self.params.islands:
+        if not self.params.submaps:
             return self._most_energetic(packet, seen.view, math.inf), seen
         if self.evidence.known and (merged := self._merged(by)) is not None:
             return merged
@@ -325,7 +325,7 @@ class ExperienceMap(PoseGraph):
     def _may_be_seen_from(self, view: int, reach_m: float) -> bool:
         """Whether an experience of this view lies within reach, wherever the packet is; or there is none at all."""
         found = self._experiences.of_view(view)
-        own = found[self.island_of[found] == self.islands.current]
+        own = found[self.submap_of[found] == self.submaps.current]
         return not len(own) or bool(self._away(own, self.robot_here).min() <= reach_m)
 
     def _away(self, which: NDArray[np.int64], pose: Pose2) -> NDArray[np.float64]:
@@ -333,7 +333,7 @@ class ExperienceMap(PoseGraph):
 
     def _most_energetic(self, packet: Packet, view: int, reach_m: float) -> int:
         return self._experiences.most_energetic(
-            packet, view, self.params, self.robot_here, BLIND * self.cell_m, reach_m, self.islands.current
+            packet, view, self.params, self.robot_here, BLIND * self.cell_m, reach_m, self.submaps.current
         )
 
     def _merged(self, by: Senses) -> tuple[int, Recognition] | None:
@@ -346,11 +346,11 @@ class ExperienceMap(PoseGraph):
         look = self.pose(belief.experience).inverse().compose(belief.pose)
         if by.witness is not None and by.witness.confirms(self, belief.experience, look) is None:
             return None
-        view, other = int(self.views[belief.experience]), int(self.island_of[belief.experience])
-        if other != self.islands.current:
-            own = self.carried and other < self.islands.current
-            self.islands.join(other, self.island_of, self.poses, self.robot_here, belief.pose)
-            self.islands.merge = Merge(self.evidence.known, belief.log_odds) if own else None
+        view, other = int(self.views[belief.experience]), int(self.submap_of[belief.experience])
+        if other != self.submaps.current:
+            own = self.carried and other < self.submaps.current
+            self.submaps.merge(other, self.submap_of, self.poses, self.robot_here, belief.pose)
+            self.submaps.last_merge = Merge(self.evidence.known, belief.log_odds) if own else None
         elif self._against_drift(belief.experience, belief.pose) >= self._against_error(belief.experience):
             self._correct_error(belief)
         self._end_of_doubt()
@@ -362,14 +362,14 @@ class ExperienceMap(PoseGraph):
         self.corrected += 1
         merge = self._merge_before(belief.experience)
         if merge is not None and self.here >= merge.first:
-            self.islands.undo(self.transitions, self.poses, self.robot_here, belief.pose)
+            self.submaps.undo(self.transitions, self.poses, self.robot_here, belief.pose)
             merge.log_odds, self._arrival = belief.log_odds, None
         else:
             off, sigma = self._off(belief.pose), self.step_sigma_m
             soften(self.transitions, belief.experience, self.evidence.known, off, sigma)
 
     def _end_of_doubt(self) -> None:
-        self.evidence.end(len(self) if np.any(self.island_of != self.islands.current) else 0)
+        self.evidence.end(len(self) if np.any(self.submap_of != self.submaps.current) else 0)
 
     def _measured(
         self, experience: int, packet: Packet, seen: Recognition, witness: Witness | None
@@ -414,9 +414,9 @@ class ExperienceMap(PoseGraph):
         return _Departure(self.here, self._offset.compose(self._travel), self._sigma, self._kidnapped)
 
     def _create(self, packet: Packet, view: int, pose: Pose2) -> None:
-        self.here = self._experiences.add(packet, view, pose, self.islands.current)
+        self.here = self._experiences.add(packet, view, pose, self.submaps.current)
         self.transitions.graph.add_node()
-        landed = self._kidnapped and self.params.islands  # on an island of its own the robot knows where it is
+        landed = self._kidnapped and self.params.submaps  # on a submap of its own the robot knows where it is
         self.pose_filter.make(sure=landed)
         self._offset, self._travel, self._sigma, self._kidnapped = IDENTITY, IDENTITY, 0.0, False
 

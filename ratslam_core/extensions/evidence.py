@@ -87,7 +87,7 @@ class Map(Protocol):
     @property
     def views(self) -> Whole: ...
     @property
-    def island_of(self) -> NDArray[np.int32]: ...
+    def submap_of(self) -> NDArray[np.int32]: ...
     @property
     def robot_here(self) -> Pose2: ...
     def log_prior(self, experience: int, pose: Pose2, /) -> float: ...
@@ -174,7 +174,7 @@ class Evidence:
         usual = max(float(np.partition(apart, len(apart) // 10)[len(apart) // 10]), 1e-9)
         possible = np.arange(len(map_.views)) < self.known
         if not self.in_doubt:
-            possible &= map_.island_of != submap
+            possible &= map_.submap_of != submap
         known = np.where(possible, map_.views, -1)[: self.known]
         units, self._units = self._units, 0.0
         self._weigh(map_, views, known, usual, units, submap)
@@ -201,7 +201,7 @@ class Evidence:
         """The best views say more exactly where old hypotheses are, or begin new ones."""
         places = map_.poses[experiences].copy()
         places[:, 2] += facing
-        submaps = map_.island_of[experiences].astype(np.float64)
+        submaps = map_.submap_of[experiences].astype(np.float64)
         known = _pull(self.hypotheses, places, submaps, units, self.cell_m)
         for k in np.flatnonzero(~known):
             prior = map_.log_prior(int(experiences[k]), Pose2(*places[k].tolist()))
@@ -256,7 +256,7 @@ class _Expected:
 
     def __init__(self, map_: Map, views: Views, known: Whole, rows: Rows) -> None:
         column = views.column_rad
-        self.ring, pairs = _near(rows, map_.poses, map_.island_of, known, column, map_.cell_m)
+        self.ring, pairs = _near(rows, map_.poses, map_.submap_of, known, column, map_.cell_m)
         owner, which, shift = pairs.T
         apart, by = views.apart_at(known[which], shift, 2)
         self.apart, self.experience, by = _least(len(rows), owner, which, apart, by)

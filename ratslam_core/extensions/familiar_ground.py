@@ -20,8 +20,8 @@ from numpy.typing import NDArray
 
 from disk import kind
 from ratslam_core.beats import weight
-from ratslam_core.extensions.islands import Islands
 from ratslam_core.extensions.pose_filter import PoseFilter
+from ratslam_core.extensions.submaps import Submaps
 from ratslam_core.pose_graph.transitions import Transitions
 from ratslam_core.types import Odometry, Pose2, Recognition
 
@@ -41,7 +41,7 @@ class Map(Protocol):
     here: int
     cell_m: float
     agrees: bool  # whether the last look agreed with where the robot believed itself to be
-    islands: Islands
+    submaps: Submaps
     pose_filter: PoseFilter
 
     def __len__(self) -> int: ...
@@ -50,7 +50,7 @@ class Map(Protocol):
     @property
     def views(self) -> NDArray[np.int64]: ...
     @property
-    def island_of(self) -> NDArray[np.int32]: ...
+    def submap_of(self) -> NDArray[np.int32]: ...
     @property
     def robot_here(self) -> Pose2: ...
 
@@ -152,7 +152,7 @@ class FamiliarGround:
         if lost or map_.pose_filter.sigma_m > SURE * cell_m:
             return
         self._found, total = _near(
-            map_.poses, map_.views, map_.island_of, map_.islands.current, self._share, robot.x, robot.y, robot.heading_rad,
+            map_.poses, map_.views, map_.submap_of, map_.submaps.current, self._share, robot.x, robot.y, robot.heading_rad,
             NEAR * cell_m, NEAR_RAD, self._near,
         )  # fmt: skip
         self.familiar = total * self._found >= ENOUGH
@@ -215,8 +215,8 @@ def _count(
 def _near(
     poses: NDArray[np.float64],
     views: NDArray[np.int64],
-    islands: NDArray[np.int32],
-    island: int,
+    submaps: NDArray[np.int32],
+    submap: int,
     share: NDArray[np.float64],
     x: float,
     y: float,
@@ -225,14 +225,14 @@ def _near(
     near_rad: float,
     out: NDArray[np.int64],
 ) -> tuple[int, float]:
-    """The experiences of an island near a place that face alike and have a view, and the sum of their shares.
+    """The experiences of a submap near a place that face alike and have a view, and the sum of their shares.
 
     As many as there is room for in `out`.
     """
     found, total = 0, 0.0
     for i in range(len(poses)):
         dx, dy = poses[i, 0] - x, poses[i, 1] - y
-        other = views[i] < 0 or islands[i] != island
+        other = views[i] < 0 or submaps[i] != submap
         if other or dx * dx + dy * dy > near_m * near_m or found == len(out):
             continue
         turn = abs(poses[i, 2] - heading) % (2 * math.pi)

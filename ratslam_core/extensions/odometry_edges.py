@@ -75,7 +75,7 @@ def soften(t: Transitions, first: int, last: int, off_m: float, sigma: float) ->
     """Take the backbone as uncertain where it may be torn after experience `first`, up to `last`; returns these rows.
 
     [ours] Observations proved that the robot is not where odometry led: unnoticed, it was carried, or its wheels slipped.
-    The loop closures that follow put both sides of these rows where they belong. With `experience_map.islands` off
+    The loop closures that follow put both sides of these rows where they belong. With `experience_map.submaps` off
     nothing is proved wrong. test_torn.py::test_an_unnoticed_kidnap_is_found_in_the_backbone.
 
     off_m: by how much they were wrong together; sigma: of odometry over one step, m.

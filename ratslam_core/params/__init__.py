@@ -92,7 +92,7 @@ class LocalViewParams:
         check_ranges(self)
 
 
-@kind("parameters of experience map/5")
+@kind("parameters of experience map/6")
 @dataclass(frozen=True, slots=True)
 class ExperienceMapParams:
     """Experiences, their links and the correction of the map (B 4, D 3)."""
@@ -117,7 +117,7 @@ class ExperienceMapParams:
         0.05, "error of a match per level of its difference; worse matches weigh less in map correction, 0 = all alike",
         0.0, 1.0, "m per level")
     odometry_drift: float = param(0.05, "growth of the odometry error with the distance driven", 0.0, 1.0, "m/m")
-    islands: bool = param(
+    submaps: bool = param(
         True, "a robot that was carried maps a submap, merged where evidence is strong; off = it believes each look")
     zone_offset: bool = param(True, "the robot enters an experience's zone beside its centre; off = at its centre")
     best_look: bool = param(

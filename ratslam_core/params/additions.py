@@ -89,7 +89,7 @@ ADDITIONS = (
         "law of evidence",
         "what is seen where the robot cannot be is weighed; a robot that was carried maps a submap, merged at odds of 1000 to 1",
         "look-alikes that are believed at once tie places together that are far apart",
-        {"experience_map.islands": False},
+        {"experience_map.submaps": False},
     ),
     Addition(
         "kidnap detector",

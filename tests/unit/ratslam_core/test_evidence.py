@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from ratslam_core import ExperienceMap, ExperienceMapParams, Odometry, Packet, Pose2, Recognition
 from ratslam_core.extensions import evidence as law
 from ratslam_core.extensions.evidence import AGAINST, FOR, LIKENESS, NATS, PRIOR, Evidence, nats
-from ratslam_core.extensions.islands import Islands, Merge, move
+from ratslam_core.extensions.submaps import Merge, Submaps, move
 from ratslam_core.params import EvidenceParams
 from ratslam_core.pose_graph.transitions import Transitions
 
@@ -68,7 +68,7 @@ class Known:
 
     def __post_init__(self) -> None:
         self.poses = np.array([[0.4 * k, 0.0, 0.0] for k in range(self.count)])
-        self.views, self.island_of = np.arange(self.count), np.zeros(self.count, np.int32)
+        self.views, self.submap_of = np.arange(self.count), np.zeros(self.count, np.int32)
         self.taken = [Pose2(*row) for row in self.poses.tolist()]
 
     def log_prior(self, _experience: int, _pose: Pose2) -> float:
@@ -191,14 +191,14 @@ def test_what_is_moved_keeps_its_shape(robot: Pose2, claimed: Pose2, made: list[
 
 def test_the_younger_submap_becomes_part_of_the_older() -> None:
     for at, other, moved in ((2, 1, [1.0, 2.0]), (1, 2, [-1.0, -2.0])):
-        islands, of, rows = Islands(), np.array([0, 0, 1, 2, 2], np.int32), np.zeros((5, 3))
+        submaps, of, rows = Submaps(), np.array([0, 0, 1, 2, 2], np.int32), np.zeros((5, 3))
         for _ in range(2):
-            islands.begin()
-        islands.current = at
-        islands.join(other, of, rows, Pose2(0.0, 0.0, 0.0), Pose2(1.0, 2.0, 0.0))
+            submaps.begin()
+        submaps.current = at
+        submaps.merge(other, of, rows, Pose2(0.0, 0.0, 0.0), Pose2(1.0, 2.0, 0.0))
         assert of.tolist() == [0, 0, 1, 1, 1]
         assert rows[:, :2].tolist() == [[0.0, 0.0]] * 3 + [moved] * 2
-        assert (islands.current, islands.begun, islands.joined) == (1, 2, 1)
+        assert (submaps.current, submaps.begun, submaps.merged) == (1, 2, 1)
 
 
 class Robot:
@@ -256,7 +256,7 @@ def test_what_is_believed_changes_no_map_and_a_submap_is_merged_as_a_whole() -> 
     robot.carry(Pose2(2.0, 0.1, 0.0))
     assert map_.lost
     believed = 0
-    while map_.islands.joined == 0:
+    while map_.submaps.merged == 0:
         robot.drive(1)
         assert np.array_equal(map_.poses[:known], before)
         if map_.belief is not None:
@@ -269,7 +269,7 @@ def test_what_is_believed_changes_no_map_and_a_submap_is_merged_as_a_whole() -> 
     assert not map_.carried
     assert not map_.lost
     assert map_.active < known
-    assert np.all(map_.island_of == 0)
+    assert np.all(map_.submap_of == 0)
     made = np.array([[p.x, p.y] for p in robot.sights.taken[known:]])
     off = map_.poses[known:, :2] - made[: len(map_) - known]
     assert np.ptp(off, axis=0) == pytest.approx([0.0, 0.0], abs=0.05)  # as a whole
@@ -285,14 +285,14 @@ def test_a_submap_is_not_merged_where_a_witness_does_not_confirm_it() -> None:
         robot.drive(1)
         belief = robot.map.evidence.belief
         sure += belief is not None and belief.log_odds > robot.map.evidence.params.merge
-        assert robot.map.islands.joined == 0
+        assert robot.map.submaps.merged == 0
     robot.confirmed = True
     robot.drive(1)
-    assert robot.map.islands.joined == 1
+    assert robot.map.submaps.merged == 1
 
 
 def test_without_submaps_the_first_look_is_believed() -> None:
-    robot = Robot(islands=False)
+    robot = Robot(submaps=False)
     robot.carry(Pose2(2.0, 0.1, 0.0))
     robot.look_alike(4)
     assert robot.map.active == 4
@@ -412,8 +412,8 @@ def merged_wrongly(robot: Robot, sure: float) -> int:
     robot.recognises = False
     robot.drive(40)
     claimed = Pose2(robot.pose.x + 6.0, 0.0, 0.0)
-    map_.islands.join(0, map_.island_of, map_.poses, map_.robot_here, claimed)
-    map_.islands.merge = Merge(known, sure)
+    map_.submaps.merge(0, map_.submap_of, map_.poses, map_.robot_here, claimed)
+    map_.submaps.last_merge = Merge(known, sure)
     t = map_.transitions
     row = t.add(len(map_) - 1, known - 10, travelled=True)
     t.measure(row, Pose2(0.0, 0.0, 0.0), 0.5, t.move[row], 0.0)
@@ -450,16 +450,16 @@ def across(t: Transitions, known: int) -> NDArray[np.bool_]:
 
 
 def test_who_drives_on_unchallenged_need_not_undo_its_merge() -> None:
-    islands = Islands()
-    islands.merge = Merge(3, 7.0)
+    submaps = Submaps()
+    submaps.last_merge = Merge(3, 7.0)
     for metres in (50.0, 49.0):
-        islands.move(metres / CELL_M, 11.0)
-        assert islands.merge is not None
-    islands.move(2.0 / CELL_M, 11.0)
-    assert islands.merge is None
-    islands.merge = Merge(3, 7.0)
-    islands.begin()
-    assert islands.merge is None
+        submaps.move(metres / CELL_M, 11.0)
+        assert submaps.last_merge is not None
+    submaps.move(2.0 / CELL_M, 11.0)
+    assert submaps.last_merge is None
+    submaps.last_merge = Merge(3, 7.0)
+    submaps.begin()
+    assert submaps.last_merge is None
 
 
 def test_a_long_loop_closes_and_odometry_is_not_to_blame() -> None:
