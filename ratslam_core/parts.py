@@ -17,10 +17,10 @@ from ratslam_core.types import Odometry, Packet, Pose2, Recognition
 class Witness(Protocol):
     """[ours] A sense that measures where the robot is to a known experience, such as a laser."""
 
-    def confirms(self, map_: Any, experience: int, look: Pose2, /) -> tuple[Pose2, float] | None:
-        """The robot in the frame of the experience, and give or take what (m), near where a look puts it.
+    def confirms(self, map_: Any, experience: int, observation: Pose2, /) -> tuple[Pose2, float] | None:
+        """The robot in the frame of the experience, and give or take what (m), near where an observation puts it.
 
-        map_: an `ExperienceMap`. An infinite error: it cannot say, so that the look counts as it is. None: it is not there.
+        map_: an `ExperienceMap`. An infinite error: it cannot say, so the observation counts as it is. None: it is not there.
         """
         ...
 
@@ -30,7 +30,7 @@ class Room(Protocol):
 
     @property
     def familiar(self) -> bool:
-        """The place is known so well that an unknown sight becomes no view."""
+        """The place is known so well that an unknown observation becomes no view."""
         ...
 
     @property
@@ -124,9 +124,9 @@ class ExperienceMapPart(Protocol):
 
     here: int  # the experience at which the map is learnt
     carried: bool  # it knows that it was carried away, and has not been put onto the map again
-    agrees: bool  # whether the last look agreed with where the robot believed itself to be
+    agrees: bool  # whether the last observation agreed with where the robot believed itself to be
     yaw_bias: float  # rad/s, learnt: odometry turns too far by so much
-    ground: Any  # a `FamiliarGround`, or `NewGround()`, with which every sight is learnt
+    ground: Any  # a `FamiliarGround`, or `NewGround()`, with which every observation is learnt
 
     def __len__(self) -> int: ...
     @property

@@ -108,7 +108,7 @@ class RatSlam:
         image: (h, w) or (h, w, 3) uint8; scene: its number, for the front end "scene numbers", which ignores the image;
         behaviour: 0 to 15, the local movement that led here (D 3.2); ranges_m: the sonars' ranges in m, shape
         (n_sonars,), for the front end "image and sonars", the occupancy pictures and to notice a kidnap; watch: called
-        after each of STAGES with its name; it may look but change nothing; witness: looks that it does not confirm are
+        after each of STAGES with its name; it may look but change nothing; witness: observations that it does not confirm are
         none. ValueError when one of them is not valid; nothing has changed then.
 
         [ours] Vision, attractor and map act in beats of 0.1 s (`beats.py`). Between two beats nothing is looked at, and

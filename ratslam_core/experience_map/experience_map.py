@@ -34,14 +34,14 @@ from ratslam_core.types import IDENTITY, Odometry, Packet, Pose2, Recognition, r
 
 CARRIED = 400.0  # cells: how far off the robot may be after it was carried
 BLIND = 4.0  # cells: when there is nothing to see, only experiences this near in the map can become active,
-BLIND_LEVELS = 10.0  # and such a look is as uncertain as one that differs by so much
+BLIND_LEVELS = 10.0  # and such an observation is as uncertain as one that differs by so much
 
 
 class Senses(NamedTuple):
-    """What can be asked of a sight, beside which view it is."""
+    """What can be asked of an observation, beside which view it is."""
 
     views: LocalViewPart | None = None  # which made it out
-    witness: Witness | None = None  # a look that it does not confirm is none
+    witness: Witness | None = None  # an observation that it does not confirm is none
 
 
 @kind("experience map/8")
@@ -72,8 +72,8 @@ class ExperienceMap(PoseGraph):
         self.corrected = (
             0  # how often evidence proved it elsewhere: carried unnoticed, slipped, or merged where it was not
         )
-        self.agrees = True  # whether the last look agreed with where the robot believed itself to be
-        self._offset = IDENTITY  # the robot in the frame of the active experience, at the best look so far
+        self.agrees = True  # whether the last observation agreed with where the robot believed itself to be
+        self._offset = IDENTITY  # the robot in the frame of the active experience, at the best observation so far
         self._sigma = 0.0  # how far off that may be, m
         self._travel = IDENTITY  # odometry since then
         self._kidnapped = False  # since the active experience was entered: the way from there is no transition
@@ -87,8 +87,8 @@ class ExperienceMap(PoseGraph):
         """One step: the robot moved as the odometry says, to this packet and this view. True when a new experience was made.
 
         behaviour: 0 to 15, the local movement that led here; links remember it. beats: how often it moved so, and for how
-        many sights this one counts. views: can be asked for more about what is seen. witness: a look that it does not
-        confirm is none. ValueError for another number, and for a packet whose place or heading is not finite.
+        many observations this one counts. views: can be asked for more about what is seen. witness: an observation that it
+        does not confirm is none. ValueError for another number, and for a packet whose place or heading is not finite.
         """
         require_behaviour(behaviour)
         for name in ("x", "y", "heading_rad"):
@@ -104,7 +104,7 @@ class ExperienceMap(PoseGraph):
         if seen.recruited:
             self.forget_view(seen.view)
         before = self._departure()
-        best, look, seen = self._choose(packet, seen, Senses(views, witness))
+        best, observation, seen = self._choose(packet, seen, Senses(views, witness))
         if best < 0 and self.ground.spare():
             return False
         if best < 0:
@@ -113,7 +113,7 @@ class ExperienceMap(PoseGraph):
             self._edges.made(self.here, driven, self.transitions, self._weight_of_way)
             return True
         if best != before.experience:
-            self._enter(best, *(look or (self._look_by_view(best, seen), self._deviation(seen))))
+            self._enter(best, *(observation or (self._observation_by_view(best, seen), self._deviation(seen))))
             self._learn_link(before, behaviour)
         elif self._arrival is not None and self._deviation(seen) < self._sigma:
             self._see_better(seen)
@@ -247,17 +247,17 @@ class ExperienceMap(PoseGraph):
     def _choose(
         self, packet: Packet, seen: Recognition, by: Senses
     ) -> tuple[int, tuple[Pose2, float] | None, Recognition]:
-        """The experience that the robot is at, -1 for none; the look at it and how far off that may be, if it is another
-        than before and was seen; and as what it is seen.
+        """The experience that the robot is at, -1 for none; the observation and how far off that may be, if it is another than
+        before and was seen; and as what it is seen.
         """
         # On familiar ground there is something to see, so the experiences of nothing do not count.
         best, seen = (-1, seen) if seen.familiar else self._seen_experience(packet, seen, by)
         by_place = self.ground.of_view(self, seen.view) if best < 0 else -1
-        look = None
+        observation = None
         if best >= 0 and best != self.here:
-            look = self._measured(best, packet, seen, by.witness)
-            best = -1 if look is None else best
-        return max(best, by_place), look, seen
+            observation = self._measured(best, packet, seen, by.witness)
+            best = -1 if observation is None else best
+        return max(best, by_place), observation, seen
 
     def log_prior(self, experience: int, pose: Pose2) -> float:
         """Log odds of a place, before anything speaks for it: how far odometry may have led astray since the robot was there,
@@ -308,18 +308,19 @@ class ExperienceMap(PoseGraph):
 
     @property
     def _reach_m(self) -> float:
-        """A look may move the robot by so much: that odometry led it farther astray is less likely than that it was carried."""
+        """An observation may move the robot by so much: that odometry led it farther astray is less likely than that it was
+        carried."""
         return max(SNAP * self.cell_m, math.sqrt(2 * self.evidence.params.unnoticed) * self.pose_filter.sigma_m)
 
     def _turns(self, experience: int, packet: Packet, seen: Recognition) -> bool:
-        """[ours] Whether a look would turn the robot farther than its heading can be off, wherever it puts it.
+        """[ours] Whether an observation would turn the robot farther than its heading can be off, wherever it puts it.
 
-        test_evidence.py::test_a_look_that_turns_the_robot_is_held_back.
+        test_evidence.py::test_an_observation_that_turns_the_robot_is_outside_the_validation_gate.
         """
         most = self.evidence.params.gate_rad
         if most >= math.pi or self.carried:
             return False
-        claimed = self.pose(experience).compose(self._look(experience, packet, seen))
+        claimed = self.pose(experience).compose(self._observation(experience, packet, seen))
         return abs(wrap_angle(claimed.heading_rad - self.robot_here.heading_rad)) > most
 
     def _may_be_seen_from(self, view: int, reach_m: float) -> bool:
@@ -343,8 +344,8 @@ class ExperienceMap(PoseGraph):
         belief = self.evidence.belief
         if belief is None or belief.log_odds < self.evidence.params.merge or by.views is None:
             return None
-        look = self.pose(belief.experience).inverse().compose(belief.pose)
-        if by.witness is not None and by.witness.confirms(self, belief.experience, look) is None:
+        observation = self.pose(belief.experience).inverse().compose(belief.pose)
+        if by.witness is not None and by.witness.confirms(self, belief.experience, observation) is None:
             return None
         view, other = int(self.views[belief.experience]), int(self.submap_of[belief.experience])
         if other != self.submaps.current:
@@ -374,16 +375,16 @@ class ExperienceMap(PoseGraph):
     def _measured(
         self, experience: int, packet: Packet, seen: Recognition, witness: Witness | None
     ) -> tuple[Pose2, float] | None:
-        """[ours] The look, and how far off it may be (m); as a witness measures it, None if it does not confirm it.
+        """[ours] The observation and how far off it may be (m); as a witness measures it, None if it does not confirm it.
 
         test_scan_ties.py::test_the_map_asks_the_witness.
         """
-        look, sigma = self._look(experience, packet, seen), self._deviation(seen)
-        confirmed = (look, math.inf) if witness is None else witness.confirms(self, experience, look)
-        return (look, sigma) if confirmed is not None and math.isinf(confirmed[1]) else confirmed
+        observation, sigma = self._observation(experience, packet, seen), self._deviation(seen)
+        confirmed = (observation, math.inf) if witness is None else witness.confirms(self, experience, observation)
+        return (observation, sigma) if confirmed is not None and math.isinf(confirmed[1]) else confirmed
 
-    def _look(self, experience: int, packet: Packet, seen: Recognition) -> Pose2:
-        """The look: the robot's pose in the frame of an experience, whose zone it may enter beside the centre."""
+    def _observation(self, experience: int, packet: Packet, seen: Recognition) -> Pose2:
+        """The robot's pose in the frame of an experience, whose zone it may enter beside the centre."""
         if not self.params.zone_offset:
             return IDENTITY
         if self.energy(experience, packet, seen.view) <= self.params.threshold:  # recognised by its view alone
@@ -401,8 +402,8 @@ class ExperienceMap(PoseGraph):
         """How far (m) the robot may be from where the view was taken: the more the view differs, the farther."""
         return self.params.anchor_sigma * (seen.difference if seen.view >= 0 else BLIND_LEVELS)
 
-    def _look_by_view(self, experience: int, seen: Recognition) -> Pose2:
-        """[ours] The look without the pose cells: the robot is where the view was taken. See `FamiliarGround.of_view`."""
+    def _observation_by_view(self, experience: int, seen: Recognition) -> Pose2:
+        """[ours] The same without the pose cells: the robot is where the view was taken. See `FamiliarGround.of_view`."""
         turn = seen.facing_rad
         if turn is None:
             turn = self.pose(experience).inverse().compose(self.robot_here).heading_rad
@@ -420,18 +421,18 @@ class ExperienceMap(PoseGraph):
         self.pose_filter.make(sure=landed)
         self._offset, self._travel, self._sigma, self._kidnapped = IDENTITY, IDENTITY, 0.0, False
 
-    def _enter(self, experience: int, look: Pose2, sigma: float) -> None:
+    def _enter(self, experience: int, observation: Pose2, sigma: float) -> None:
         """Make a known experience active."""
-        self._edges.look()
+        self._edges.observe()
         self.pose_filter.local = self.pose(experience).inverse().compose(self.robot_here)
-        self._offset, self._travel, self._sigma, self._kidnapped = look, IDENTITY, sigma, False
+        self._offset, self._travel, self._sigma, self._kidnapped = observation, IDENTITY, sigma, False
         self.here = experience
-        self.agrees = self.pose_filter.see(look, sigma)
+        self.agrees = self.pose_filter.see(observation, sigma)
 
     def _see_better(self, seen: Recognition) -> None:
         """[ours] The robot is nearer than before to where the active experience was made: measure the transition again.
 
-        test_experience_map_transitions.py::test_the_best_look_decides_the_transition.
+        test_experience_map_transitions.py::test_the_best_observation_decides_the_transition.
         """
         arrival = self._arrival
         assert arrival is not None
@@ -459,7 +460,7 @@ class ExperienceMap(PoseGraph):
         sigma = math.hypot(before.sigma, self.params.odometry_drift * leg.way_m)
         arrival = _Arrival(row, t.move[row].copy(), float(t.weight[row]), before.came, sigma)
         backbone = self.params.odometry_edges and bool(t.chain[row]) and t.passages[row] > 1
-        self._arrival = arrival if self.params.best_look and not backbone else None
+        self._arrival = arrival if self.params.best_observation and not backbone else None
         if not backbone:
             self._measure(arrival)
         if not before.kidnapped:
@@ -507,10 +508,10 @@ class _Departure:
 @kind("arrival/1")
 @dataclass(slots=True)
 class _Arrival:
-    """The transition that led to the active experience, kept as long as a better look may measure it again."""
+    """The transition that led to the active experience, kept as long as a better observation may measure it again."""
 
     row: int
     move: NDArray[np.float64]  # of the row before this passage
     weight: float  # of the row before this passage
-    came: Pose2  # the robot in the frame of the experience before, at the best look at the active one
+    came: Pose2  # the robot in the frame of the experience before, at the best observation of the active one
     sigma: float

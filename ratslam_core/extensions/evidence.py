@@ -10,7 +10,7 @@ Beside all hypotheses stands that of a new place, for and against which nothing 
 A robot that noticed that it was carried may be anywhere. One that sees something where it cannot be is in doubt: *here*,
 where odometry has led it, is a rival, too, weighed by what is seen there; what lies farther off than odometry can have
 drifted begins with odds against it, at most those of having been carried unnoticed; and since an exact copy of a place
-may exist, looks say no more than MOST_SAID. So in a twin odometry decides, where looks cannot.
+may exist, observations say no more than MOST_SAID. So in a twin odometry decides, where observations cannot.
 
 The robot *believes* a hypothesis that is likelier than all others together. There it acts; nothing is learnt from it, so
 that it may be wrong at no cost. Where the odds are 1000 to 1, the submap on which it was is *merged*. test_evidence.py.
@@ -37,7 +37,7 @@ MOST = 32  # hypotheses
 UNIT, UNIT_RAD = 4.0, 1.0  # cells; so long a way, or so wide a turn, is one unit of evidence
 LEAK = 0.2  # share of the evidence for a hypothesis that a unit takes away
 LEAST_SEEN = 1.5  # units that a hypothesis needs to be believed
-MOST_SAID = 14.0  # nats that looks can say for a place, since an exact copy of it may exist
+MOST_SAID = 14.0  # nats that observations can say for a place, since an exact copy of it may exist
 LEAST_VIEWS = 10  # of fewer views nobody can say how like views are anyway
 MOST_VIEWS = 2048  # that are compared with an observation; of more, every second, third ... one
 MOST_PAIRS = 4096  # of a hypothesis and a view near it

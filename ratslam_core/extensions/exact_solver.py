@@ -8,7 +8,7 @@ test_a_very_large_map_is_swept_in_some_beats_only}. `relaxation.Relaxation` is t
 plain twin: sweeps and nothing else.
 
 [ours] Closures that no map can bring together with the others are given up, by graduated non-convexity. Odometry between
-experiences made one after the other is sure; every other row rests on a look and may be false. At first all of them
+experiences made one after the other is sure; every other row rests on an observation and may be false. At first all of them
 count. Then, round by round, those that the map contradicts count less, in the beginning gently, in the end wholly or not
 at all (truncated least squares). So many false closures are found out together; and since each solution asks all of them
 anew, one that was believed for a while is let go when others contradict it, and one that was given up counts again when
@@ -67,8 +67,8 @@ class ExactSolver:
         One that was given up and is still far off is no news. test_graduated_trust.py::test_a_lie_is_tried_once.
         """
         t = graph.transitions
-        looks = np.flatnonzero(~self._odometry(graph) & (t.weight[: t.count] > 0.0))
-        off, old = contradiction(*_given(graph), looks, graph.cell_m), given_up[looks]
+        observations = np.flatnonzero(~self._odometry(graph) & (t.weight[: t.count] > 0.0))
+        off, old = contradiction(*_given(graph), observations, graph.cell_m), given_up[observations]
         far = off > TRIAL / BAR
         return bool(np.any(far & ~old) or np.any((off < 1.0) & old))
 
@@ -118,7 +118,7 @@ def _given(
 
 
 ODOMETRY_GIVES = 5.0  # sigma of disagreement at which odometry counts half
-LOOK_GIVES = 1.0  # from so many on a look pulls no harder
+HUBER = 1.0  # sigma of disagreement from which on an observation pulls no harder
 
 
 def trust(
@@ -132,16 +132,16 @@ def trust(
     """[ours] How far each link is believed, 0 to 1, given how well the map fits it.
 
     weights: STEP_SIGMA^2 / variance; cell_m: side of a cell of the pose cells; chain: rows of odometry, the others are
-    looks. The pull of a look stops growing with its error (Huber). Odometry cannot be far off, so its pull even falls
-    (Cauchy). Many looks that agree thus tear the one link along which the robot was carried, and a single look does not.
-    test_relaxation_trust.py::test_many_looks_tear_the_link_of_a_kidnap.
+    observations. The pull of an observation stops growing with its error (Huber). Odometry cannot be far off, so its pull
+    even falls (Cauchy). Many observations that agree thus break the one link along which the robot was carried, and a single
+    one does not.
+    test_relaxation_trust.py::test_many_observations_break_the_link_of_a_kidnap.
     """
     ex, ey, turn = disagreement(poses, links, moves).T
     rad_per_m, sigma_m = TURN_CELLS / cell_m, STEP_SIGMA * cell_m
     chi: NDArray[np.float64] = np.sqrt(weights * (ex**2 + ey**2 + (turn / rad_per_m) ** 2)) / sigma_m
-    return np.where(
-        chain, 1 / (1 + (chi / ODOMETRY_GIVES) ** 2), np.minimum(1, LOOK_GIVES / np.maximum(chi, LOOK_GIVES))
-    )
+    odometry, observation = 1 / (1 + (chi / ODOMETRY_GIVES) ** 2), np.minimum(1, HUBER / np.maximum(chi, HUBER))
+    return np.where(chain, odometry, observation)
 
 
 SIGMA = 0.6  # cells: least error that a closure is taken to have

@@ -1,8 +1,8 @@
 """[ours] Ground that is recognised often enough gets no more views and experiences.
 
-The papers' robot recruits a view for each sight that is unlike all others, and an experience for each view at a new
+The papers' robot recruits a view for each observation that is unlike all others, and an experience for each view at a new
 state of the pose cells, so its memory grows for as long as it drives, even in an office that never changes. Here each
-experience knows which share of the latest sights near it were recognised. Where the shares of the experiences near the
+experience knows which share of the latest observations near it were recognised. Where the shares of the experiences near the
 robot add up to ENOUGH, one more would tell it nothing, and what it sees is let go: it goes on by odometry until it
 recognises something again, never for long. Where a place changes, nothing is recognised any more, the shares fall, and
 the new appearance is learnt. A robot that is not sure of its place learns as in the papers.
@@ -25,8 +25,8 @@ from ratslam_core.extensions.submaps import Submaps
 from ratslam_core.pose_graph.transitions import Transitions
 from ratslam_core.types import Odometry, Pose2, Recognition
 
-ENOUGH = 0.5  # a place is familiar when the shares of recognised sights of the experiences there add up to this
-SIGHTS = 20  # over which that share is averaged
+ENOUGH = 0.5  # a place is familiar when the shares of recognised observations of the experiences there add up to this
+OBSERVATIONS = 20  # over which that share is averaged
 NEAR = 1.6  # cells; experiences this near are of one place
 NEAR_RAD = math.radians(17)  # if their headings differ by no more
 SURE = 1.2  # cells: only a robot whose place is known to this precision calls it familiar
@@ -40,7 +40,7 @@ class Map(Protocol):
 
     here: int
     cell_m: float
-    agrees: bool  # whether the last look agreed with where the robot believed itself to be
+    agrees: bool  # whether the last observation agreed with where the robot believed itself to be
     submaps: Submaps
     pose_filter: PoseFilter
 
@@ -61,14 +61,14 @@ class FamiliarGround:
 
     def __init__(self) -> None:
         self.familiar = False
-        self.spared = 0  # sights so far that would have become experiences
-        self.adopted = 0  # sights so far that were taken for an experience since it is near in the map
+        self.spared = 0  # observations so far that would have become experiences
+        self.adopted = 0  # observations so far that were taken for an experience since it is near in the map
         self.faded = -1  # the view whose room the next one gets, -1 for none: the place has room
         self.views_faded = 0  # views so far that another took the room of
         self.links_spared = 0
         self._let_go = False  # what was seen in this step
         self._share = np.zeros(1024)
-        self._unseen = np.zeros(1024, np.int64)  # counted sights near each experience since it was recognised
+        self._unseen = np.zeros(1024, np.int64)  # counted observations near each experience since it was recognised
         self._near = np.zeros(MOST_NEAR, np.int64)
         self._found = 0
 
@@ -89,7 +89,7 @@ class FamiliarGround:
 
     @property
     def share(self) -> NDArray[np.float64]:
-        """For each experience, which share of the latest sights near it was recognised. A view, with room to spare."""
+        """For each experience, which share of the latest observations near it was recognised. A view, with room to spare."""
         return self._share
 
     def forget(self) -> None:
@@ -128,9 +128,9 @@ class FamiliarGround:
     def note(self, map_: Map, seen: Recognition, created: bool, odometry: Odometry, lost: bool, beats: int = 1) -> None:
         """The end of a step: count what was seen for the place where the robot was, and look where it is now.
 
-        Only sights on the way count, since one that lasts says no more than one; and neither do those of nothing. An
-        experience that was just made begins with the mean share of those around it. beats: for how many sights this one
-        counts.
+        Only observations on the way count, since one that lasts says no more than one; and neither do those of nothing. An
+        experience that was just made begins with the mean share of those around it. beats: for how many observations this
+        one counts.
         """
         while len(map_) > len(self._share):
             self._share = np.concatenate([self._share, np.zeros_like(self._share)])
@@ -138,7 +138,7 @@ class FamiliarGround:
         self.views_faded += seen.recruited and seen.view == self.faded
         if not odometry.still and (seen.view >= 0 or seen.familiar):
             hit = map_.agrees and not (created or self._let_go)
-            _count(self._share, self._unseen, self.near, float(hit), weight(1 / SIGHTS, beats), beats)
+            _count(self._share, self._unseen, self.near, float(hit), weight(1 / OBSERVATIONS, beats), beats)
             if hit:
                 self._unseen[map_.here] = 0
         if created:
@@ -167,7 +167,7 @@ class FamiliarGround:
 
 @kind("new ground/2")
 class NewGround:
-    """As in the papers: every sight that is unlike all others is kept."""
+    """As in the papers: every observation that is unlike all others is kept."""
 
     near = np.zeros(0, np.int64)  # no experience is known to be near
 

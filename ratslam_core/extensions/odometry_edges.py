@@ -2,7 +2,7 @@
 
 Observations and odometry never share a row. An observation can be wrong by decimetres, or false; odometry is right to a
 few per cent unless the robot is carried or its wheels slip, which is found out later (`soften`).
-test_experience_map_transitions.py::test_no_look_is_averaged_into_the_backbone. `NoOdometryEdges` is the plain twin: in
+test_experience_map_transitions.py::test_no_observation_is_averaged_into_the_backbone. `NoOdometryEdges` is the plain twin: in
 the papers only transitions tie experiences.
 """
 
@@ -18,7 +18,7 @@ from ratslam_core.pose_graph.transitions import PreintegratedOdometry, Transitio
 from ratslam_core.types import Odometry, Pose2
 
 
-@kind("odometry edges/1")
+@kind("odometry edges/2")
 class OdometryEdges:
     """Remembers the newest experience: where it was made is known exactly.
 
@@ -30,15 +30,15 @@ class OdometryEdges:
 
     def __init__(self) -> None:
         self.latest = -1
-        self.looked = False  # since then
+        self.observed = False  # since then
         self.since = PreintegratedOdometry()
 
     def move(self, moved: Pose2, odometry: Odometry) -> None:
         self.since.add(moved, odometry)
 
-    def look(self) -> None:
+    def observe(self) -> None:
         """A known experience was recognised: what is learnt next begins with an observation."""
-        self.looked = True
+        self.observed = True
 
     def forget(self) -> None:
         """The robot was carried away: odometry no longer ties it to the newest experience."""
@@ -46,12 +46,12 @@ class OdometryEdges:
 
     def made(self, active: int, driven: int, transitions: Transitions, weight_of: Callable[[float], float]) -> None:
         """`active` was just made; `driven` is the row of the way to it. weight_of: the weight after a distance (m)."""
-        if self.latest >= 0 and self.looked:
+        if self.latest >= 0 and self.observed:
             row = transitions.add(self.latest, active, travelled=False)
             transitions.measure(row, self.since.moved, weight_of(self.since.way_m), transitions.move[row], 0.0)
             transitions.take_time(row, 0.0, self.since.turning_s)
             transitions.chain[driven] = False
-        self.latest, self.looked, self.since = active, False, PreintegratedOdometry()
+        self.latest, self.observed, self.since = active, False, PreintegratedOdometry()
 
 
 @kind("no odometry edges/1")
@@ -61,7 +61,7 @@ class NoOdometryEdges:
     def move(self, _moved: Pose2, _odometry: Odometry) -> None:
         """Nothing is remembered."""
 
-    def look(self) -> None:
+    def observe(self) -> None:
         """Nothing is remembered."""
 
     def forget(self) -> None:

@@ -90,10 +90,10 @@ def _ground(ground: FamiliarGround, n: int, views: int) -> None:
     for name in ("spared", "adopted", "links_spared", "views_faded"):
         whole(name, getattr(ground, name))
     share = array("shares", ground._share, np.float64, (None,))
-    true(len(share) >= n, "each experience must have a share of recognised sights")
+    true(len(share) >= n, "each experience must have a share of recognised observations")
     within("a share", share, 0.0, 1.0)
     unseen = array("unseen", ground._unseen, np.int64, share.shape)
-    within("a count of sights", unseen, 0, MOST)
+    within("a count of observations", unseen, 0, MOST)
     whole("the faded view", ground.faded, -1, views - 1)
     near = array("what is near", ground._near, np.int64, (MOST_NEAR,))
     within("an experience nearby", near[: whole("how many are near", ground._found, 0, MOST_NEAR)], 0, n - 1)

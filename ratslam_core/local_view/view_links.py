@@ -81,7 +81,7 @@ class ViewLinks:
             cells, activity, slot, self._seen, np.float32(eta), np.float32(self.params.decay),
         )  # fmt: skip
         most = self.params.most_links
-        if most and block[1] > most + most // 4:  # not with every sight, since to find the weakest takes time
+        if most and block[1] > most + most // 4:  # not with every observation, since to find the weakest takes time
             self._forget_weakest(view, most)
 
     def _forget_weakest(self, view: int, most: int) -> None:

@@ -53,12 +53,12 @@ ADDITIONS = (
         "place within the zone",
         "the robot may be beside an experience's centre, and a transition is measured where it comes nearest to it",
         "the robot enters a zone at its edge, half a metre from where the experience was made",
-        {"experience_map.zone_offset": False, "experience_map.best_look": False},
+        {"experience_map.zone_offset": False, "experience_map.best_observation": False},
     ),
     Addition(
         "uncertain looks",
-        "a look is weighed against odometry, and a passage in map correction, by how precisely it is known",
-        "looks are imprecise, odometry over one step is not; taken as they are, the estimate swerves and the map bends",
+        "an observation is weighed against odometry, and a passage in map correction, by how precisely it is known",
+        "observations are imprecise, odometry over one step is not; taken as they are, the estimate swerves and the map bends",
         {"experience_map.anchor_sigma": 0.0, "experience_map.odometry_drift": 0.0},
     ),
     Addition(
@@ -70,7 +70,7 @@ ADDITIONS = (
     Addition(
         "odometry edges",
         "odometry alone ties experiences made one after the other, even when known ones lie between",
-        "looks, averaged into the rigid chain of odometry or interrupting it, bend and shrink the map",
+        "observations, averaged into the rigid chain of odometry or interrupting it, bend and shrink the map",
         {"experience_map.odometry_edges": False},
     ),
     Addition(
@@ -105,7 +105,7 @@ ADDITIONS = (
     ),
     Addition(
         "familiar ground",
-        "where enough of the sights are recognised, no more views, experiences and links are learnt",
+        "where enough of the observations are recognised, no more views, experiences and links are learnt",
         "otherwise the memory grows for as long as the robot drives, in a place that never changes",
         {"experience_map.familiar_ground": False},
     ),

@@ -1,4 +1,4 @@
-"""A laser ties experiences by their scans, and says whether a look is true."""
+"""A laser ties experiences by their scans, and says whether an observation is true."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def test_a_scan_ties_an_experience_to_an_old_one_where_it_belongs() -> None:
     assert math.hypot(last.x - first.x, last.y - first.y) < 0.15
 
 
-def test_a_true_look_becomes_as_precise_as_the_scans() -> None:
+def test_a_true_observation_becomes_as_precise_as_the_scans() -> None:
     ties = ScanTies(ABOUT)
     map_ = _made(ties, room(0, 0, 0))
     ties.see(room(HERE.x, HERE.y, HERE.heading_rad))
@@ -88,7 +88,7 @@ class _Says:
     def __init__(self, answer: tuple[Pose2, float] | None) -> None:
         self.answer = answer
 
-    def confirms(self, _map: object, _experience: int, _look: Pose2) -> tuple[Pose2, float] | None:
+    def confirms(self, _map: object, _experience: int, _observation: Pose2) -> tuple[Pose2, float] | None:
         return self.answer
 
 
@@ -107,7 +107,7 @@ def test_the_map_asks_the_witness(witness: _Says | None, active: int, x: float) 
     map_, at = RatSlam().experience_map, Packet(9.0, 9.0, 0.0, 1.0)
     map_.step(at, Recognition(0, True, -1, math.inf), Odometry(0.0, 0.0, 1.0))
     map_.step(Packet(30.0, 9.0, 0.0, 1.0), Recognition(1, True, -1, math.inf), Odometry(1.0, 0.0, 1.0))
-    map_.pose_filter.sigma_m = 100.0  # it knows nothing, so that a look that it believes is all that it knows
+    map_.pose_filter.sigma_m = 100.0  # it knows nothing, so that an observation that it believes is all that it knows
     map_.step(at, Recognition(0, False, 0, 0.0), Odometry(-0.6, 0.0, 1.0), witness=witness)
     assert map_.active == active
     assert map_.robot.x == pytest.approx(x, abs=0.02)

@@ -27,7 +27,7 @@ poses = st.builds(Pose2, st.floats(-9, 9), st.floats(-9, 9), st.floats(-3, 3))
 
 
 @dataclass
-class Sights:
+class Views:
     """A local view that sees the robot's true place: views taken near it are a third as unlike as others are."""
 
     taken: list[Pose2]
@@ -81,16 +81,16 @@ def carried(known: Known, expected: Pose2 | None = None, *, sure: bool = True) -
     return evidence
 
 
-def drive(evidence: Evidence, known: Known, sights: Sights, ticks: int, odometry: Odometry = DRIVE) -> None:
+def drive(evidence: Evidence, known: Known, views: Views, ticks: int, odometry: Odometry = DRIVE) -> None:
     """The robot sees after each tick."""
     for _ in range(ticks):
         turn = odometry.yaw_rate * odometry.dt
         way = odometry.speed * odometry.dt
         moved = Pose2(way * math.cos(turn / 2), way * math.sin(turn / 2), turn)
-        sights.robot = sights.robot.compose(moved)
-        sights.twin = None if sights.twin is None else sights.twin.compose(moved)
+        views.robot = views.robot.compose(moved)
+        views.twin = None if views.twin is None else views.twin.compose(moved)
         evidence.move(odometry)
-        evidence.observe(known, sights, 0 if evidence.in_doubt else 1)
+        evidence.observe(known, views, 0 if evidence.in_doubt else 1)
 
 
 def test_the_less_alike_the_less_it_says_and_never_too_much() -> None:
@@ -116,26 +116,26 @@ def test_hypotheses_move_by_odometry(ticks: list[tuple[float, float, float]], st
 
 def test_it_believes_where_it_is_and_is_surer_with_every_metre() -> None:
     known = Known()
-    evidence, sights = carried(known), Sights(known.taken, Pose2(2.0, 0.1, 0.05))
-    drive(evidence, known, sights, 4)
-    assert evidence.belief is None  # one look, however good
-    drive(evidence, known, sights, 30)
+    evidence, views = carried(known), Views(known.taken, Pose2(2.0, 0.1, 0.05))
+    drive(evidence, known, views, 4)
+    assert evidence.belief is None  # one observation, however good
+    drive(evidence, known, views, 30)
     believed = evidence.belief
     assert believed is not None
-    assert math.hypot(believed.pose.x - sights.robot.x, believed.pose.y - sights.robot.y) < 0.4
-    assert abs(believed.pose.heading_rad - sights.robot.heading_rad) < 0.15
+    assert math.hypot(believed.pose.x - views.robot.x, believed.pose.y - views.robot.y) < 0.4
+    assert abs(believed.pose.heading_rad - views.robot.heading_rad) < 0.15
     odds = believed.log_odds
-    drive(evidence, known, sights, 50)
+    drive(evidence, known, views, 50)
     assert evidence.belief is not None
     assert evidence.belief.log_odds > max(odds, evidence.params.merge)
 
 
 def test_who_stands_still_sees_one_thing() -> None:
     known = Known()
-    evidence, sights = carried(known), Sights(known.taken, Pose2(2.0, 0.0, 0.0))
-    drive(evidence, known, sights, 1)
+    evidence, views = carried(known), Views(known.taken, Pose2(2.0, 0.0, 0.0))
+    drive(evidence, known, views, 1)
     before = evidence.hypotheses[:, law.ODDS].copy()
-    drive(evidence, known, sights, 100, Odometry(0.0, 0.0, 0.1))
+    drive(evidence, known, views, 100, Odometry(0.0, 0.0, 0.1))
     assert evidence.hypotheses[: len(before), law.ODDS] == pytest.approx(before)
     assert evidence.belief is None
 
@@ -144,9 +144,9 @@ def test_who_stands_still_sees_one_thing() -> None:
 @given(st.floats(-0.4, 0.4))
 def test_on_new_ground_it_believes_nothing(yaw_rate: float) -> None:
     known = Known()
-    evidence, sights = carried(known), Sights(known.taken, Pose2(0.0, 40.0, 1.0))
+    evidence, views = carried(known), Views(known.taken, Pose2(0.0, 40.0, 1.0))
     for _ in range(20):
-        drive(evidence, known, sights, 5, Odometry(0.3, yaw_rate, 0.1))
+        drive(evidence, known, views, 5, Odometry(0.3, yaw_rate, 0.1))
         assert evidence.belief is None
 
 
@@ -154,9 +154,9 @@ def test_of_two_places_that_look_the_same_neither_is_believed() -> None:
     """In a twin corridor the same can be seen, metre by metre."""
     known = Known(60)
     evidence = carried(known)
-    sights = Sights(known.taken, Pose2(2.0, 0.0, 0.0), Pose2(14.0, 0.0, 0.0))
+    views = Views(known.taken, Pose2(2.0, 0.0, 0.0), Pose2(14.0, 0.0, 0.0))
     for _ in range(12):
-        drive(evidence, known, sights, 5)
+        drive(evidence, known, views, 5)
         assert evidence.belief is None
     odds = np.sort(evidence.hypotheses[:, law.ODDS])[-2:]
     assert odds[0] == pytest.approx(odds[1], abs=0.5)
@@ -209,7 +209,7 @@ class Robot:
         known = ExperienceMapParams(odometry_drift=0.03, sweeps=0, solve_every=0, **params)
         self.map = ExperienceMap(SHAPE, CELL_M, known)
         self.pose = Pose2(0.0, 0.0, 0.0)
-        self.sights = Sights([])
+        self.views = Views([])
         self.confirmed = True
         self.recognises = False
         self.drive(ticks)
@@ -218,13 +218,13 @@ class Robot:
     def drive(self, ticks: int) -> None:
         for tick in range(ticks):
             self.pose = self.pose.compose(Pose2(0.03, 0.0, 0.0))
-            self.sights.robot = self.pose
-            alike = [view for view in range(len(self.sights.taken)) if self.sights.difference_to(view) < 5]
+            self.views.robot = self.pose
+            alike = [view for view in range(len(self.views.taken)) if self.views.difference_to(view) < 5]
             known = self.recognises and bool(alike)
             new = tick % 13 == 0 and not known
             if new:
-                self.sights.taken.append(self.pose)
-            view = alike[0] if known else len(self.sights.taken) - 1
+                self.views.taken.append(self.pose)
+            view = alike[0] if known else len(self.views.taken) - 1
             packet = Packet(32 + 4 * self.pose.x % 64, 32 + self.pose.y % 64, self.pose.heading_rad, 1.0)
             self.step(packet, Recognition(view, new, view, 1.0, 0.0))
 
@@ -233,7 +233,7 @@ class Robot:
         self.step(Packet(*self.map.cell_state(view)[:3], 1.0), Recognition(view, False, view, 1.0, 0.0))
 
     def step(self, packet: Packet, seen: Recognition) -> None:
-        self.map.step(packet, seen, DRIVE, views=self.sights, witness=self)  # type: ignore[arg-type]
+        self.map.step(packet, seen, DRIVE, views=self.views, witness=self)  # type: ignore[arg-type]
 
     def confirms(self, _map: object, _experience: int, look: Pose2) -> tuple[Pose2, float] | None:
         return (look, math.inf) if self.confirmed else None
@@ -270,7 +270,7 @@ def test_what_is_believed_changes_no_map_and_a_submap_is_merged_as_a_whole() -> 
     assert not map_.lost
     assert map_.active < known
     assert np.all(map_.submap_of == 0)
-    made = np.array([[p.x, p.y] for p in robot.sights.taken[known:]])
+    made = np.array([[p.x, p.y] for p in robot.views.taken[known:]])
     off = map_.poses[known:, :2] - made[: len(map_) - known]
     assert np.ptp(off, axis=0) == pytest.approx([0.0, 0.0], abs=0.05)  # as a whole
     assert np.abs(off).max() < 0.5
@@ -291,7 +291,7 @@ def test_a_submap_is_not_merged_where_a_witness_does_not_confirm_it() -> None:
     assert robot.map.submaps.merged == 1
 
 
-def test_without_submaps_the_first_look_is_believed() -> None:
+def test_without_submaps_the_first_observation_is_believed() -> None:
     robot = Robot(submaps=False)
     robot.carry(Pose2(2.0, 0.1, 0.0))
     robot.look_alike(4)
@@ -322,45 +322,45 @@ def in_doubt(known: Known, prior: float) -> Evidence:
     return evidence
 
 
-def test_looks_alone_never_prevail_against_odometry() -> None:
+def test_observations_alone_never_prevail_against_odometry() -> None:
     """On new ground that looks like a known place, to the last detail and for metre after metre, the robot is where it went."""
     known = Known(60)
     known.robot_here = Pose2(0.0, 40.0, 0.0)
-    evidence, sights = in_doubt(known, -EvidenceParams().unnoticed), Sights(known.taken, Pose2(2.0, 0.0, 0.0))
+    evidence, views = in_doubt(known, -EvidenceParams().unnoticed), Views(known.taken, Pose2(2.0, 0.0, 0.0))
     for _ in range(60):
-        drive(evidence, known, sights, 10)
+        drive(evidence, known, views, 10)
         assert evidence.belief is None
     assert evidence.hypotheses[:, law.ODDS].max() == law.MOST_SAID - evidence.params.unnoticed
 
 
 def test_what_is_missing_where_it_should_be_speaks_against_odometry() -> None:
     known = Known(60)
-    evidence, sights = in_doubt(known, -EvidenceParams().unnoticed), Sights(known.taken, Pose2(2.0, 0.0, 0.0))
+    evidence, views = in_doubt(known, -EvidenceParams().unnoticed), Views(known.taken, Pose2(2.0, 0.0, 0.0))
     known.robot_here = Pose2(14.0, 0.0, 0.0)
     while evidence.belief is None or evidence.belief.log_odds < evidence.params.merge:
-        drive(evidence, known, sights, 1)
+        drive(evidence, known, views, 1)
         known.robot_here = known.robot_here.compose(Pose2(0.03, 0.0, 0.0))
-        assert sights.robot.x < 10.0
+        assert views.robot.x < 10.0
     assert evidence.here < -2.0
-    assert math.hypot(evidence.belief.pose.x - sights.robot.x, evidence.belief.pose.y) < 0.5
+    assert math.hypot(evidence.belief.pose.x - views.robot.x, evidence.belief.pose.y) < 0.5
 
 
-def test_what_lies_within_the_drift_of_odometry_needs_looks_only() -> None:
+def test_what_lies_within_the_drift_of_odometry_needs_observations_only() -> None:
     known = Known(60)
     known.robot_here = Pose2(0.0, 40.0, 0.0)
-    evidence, sights = in_doubt(known, -2.0), Sights(known.taken, Pose2(2.0, 0.0, 0.0))
+    evidence, views = in_doubt(known, -2.0), Views(known.taken, Pose2(2.0, 0.0, 0.0))
     while evidence.belief is None or evidence.belief.log_odds < evidence.params.merge:
-        drive(evidence, known, sights, 1)
-        assert sights.robot.x < 8.0
+        drive(evidence, known, views, 1)
+        assert views.robot.x < 8.0
     assert evidence.here == 0.0
 
 
 def test_where_it_is_mapping_is_no_other_place() -> None:
     known = Known(60)
-    evidence, sights = in_doubt(known, 0.0), Sights(known.taken, Pose2(2.0, 0.0, 0.0))
+    evidence, views = in_doubt(known, 0.0), Views(known.taken, Pose2(2.0, 0.0, 0.0))
     for _ in range(50):
-        drive(evidence, known, sights, 1)
-        known.robot_here = sights.robot.compose(Pose2(0.3, 0.2, 0.2))
+        drive(evidence, known, views, 1)
+        known.robot_here = views.robot.compose(Pose2(0.3, 0.2, 0.2))
         assert evidence.belief is None
     near = evidence.weighed(known.robot_here)[1]
     assert max(near) > 1.0  # beside exactly where it maps, since the map is a little off
@@ -435,7 +435,7 @@ def test_a_merge_that_proves_wrong_is_undone() -> None:
         robot.drive(1)
         assert robot.pose.x < 8.0
     assert robot.off_m < 0.5
-    made = np.array([[p.x, p.y] for p in robot.sights.taken[known : known + 3]])
+    made = np.array([[p.x, p.y] for p in robot.views.taken[known : known + 3]])
     assert map_.poses[known : known + 3, :2] == pytest.approx(made, abs=0.5)
     assert np.array_equal(map_.poses[:known], before)
     assert t.weight[: len(weights)] == pytest.approx(np.where(ties, 0.0, weights))  # odometry is not to blame
@@ -491,7 +491,7 @@ def test_the_prior_is_what_odometry_can_have_drifted(off: float, drift: float) -
     assert map_.log_prior(0, here) == PRIOR
 
 
-def test_a_look_that_turns_the_robot_is_held_back() -> None:
+def test_an_observation_that_turns_the_robot_is_outside_the_validation_gate() -> None:
     """As near as it puts the robot: one whose heading is sure is not turned by a look-alike. 3.2 is the plain twin."""
     packet = Packet(32.0, 32.0, 0.0, 1.0)
     for gate_rad, held in ((3.2, False), (0.8, True)):
