@@ -14,10 +14,10 @@ from ratslam_core.pose_graph.pose_graph import PoseGraph
 from ratslam_core.types import Odometry, Packet, Pose2, Recognition
 
 
-class Witness(Protocol):
-    """[ours] A sense that measures where the robot is to a known experience, such as a laser."""
+class GeometricVerification(Protocol):
+    """[ours] Another sense, such as a laser, that measures where the robot is to a known experience."""
 
-    def confirms(self, map_: Any, experience: int, observation: Pose2, /) -> tuple[Pose2, float] | None:
+    def verified(self, map_: Any, experience: int, observation: Pose2, /) -> tuple[Pose2, float] | None:
         """The robot in the frame of the experience, and give or take what (m), near where an observation puts it.
 
         map_: an `ExperienceMap`. An infinite error: it cannot say, so the observation counts as it is. None: it is not there.
@@ -153,7 +153,7 @@ class ExperienceMapPart(Protocol):
 
     def step(
         self, packet: Packet, seen: Recognition, odometry: Odometry, behaviour: int, /, *,
-        beats: int, views: LocalViewPart, witness: Witness | None,
+        beats: int, views: LocalViewPart, verification: GeometricVerification | None,
     ) -> bool:  # fmt: skip
         """Find or make the active experience; True when it is new. The robot has moved so in each of the beats."""
         ...

@@ -22,11 +22,11 @@ from ratslam_core.experience_map.temporal_map import TemporalMap
 from ratslam_core.extensions.evidence import PRIOR, Belief, Evidence
 from ratslam_core.extensions.exact_solver import ExactSolver
 from ratslam_core.extensions.familiar_ground import FamiliarGround, NewGround
-from ratslam_core.extensions.odometry_edges import NoOdometryEdges, OdometryEdges, open_way_m, soften
+from ratslam_core.extensions.odometry_edges import NoOdometryEdges, OdometryEdges, inflate_covariance, open_way_m
 from ratslam_core.extensions.pose_filter import SNAP, PoseFilter
 from ratslam_core.extensions.submaps import Merge, Submaps
 from ratslam_core.params import EvidenceParams, ExperienceMapParams
-from ratslam_core.parts import LocalViewPart, Optimiser, Witness
+from ratslam_core.parts import GeometricVerification, LocalViewPart, Optimiser
 from ratslam_core.pose_graph.pose_graph import PoseGraph
 from ratslam_core.pose_graph.relaxation import has_diverged
 from ratslam_core.pose_graph.transitions import PreintegratedOdometry, moved_by, require_behaviour
@@ -41,7 +41,7 @@ class Senses(NamedTuple):
     """What can be asked of an observation, beside which view it is."""
 
     views: LocalViewPart | None = None  # which made it out
-    witness: Witness | None = None  # an observation that it does not confirm is none
+    verification: GeometricVerification | None = None  # drops the observations that it does not confirm
 
 
 @kind("experience map/8")
@@ -82,13 +82,14 @@ class ExperienceMap(PoseGraph):
 
     def step(
         self, packet: Packet, seen: Recognition, odometry: Odometry, behaviour: int = 0, *,
-        beats: int = 1, views: LocalViewPart | None = None, witness: Witness | None = None,
+        beats: int = 1, views: LocalViewPart | None = None, verification: GeometricVerification | None = None,
     ) -> bool:  # fmt: skip
         """One step: the robot moved as the odometry says, to this packet and this view. True when a new experience was made.
 
         behaviour: 0 to 15, the local movement that led here; links remember it. beats: how often it moved so, and for how
-        many observations this one counts. views: can be asked for more about what is seen. witness: an observation that it
-        does not confirm is none. ValueError for another number, and for a packet whose place or heading is not finite.
+        many observations this one counts. views: can be asked for more about what is seen. verification: drops the
+        observations that it does not confirm. ValueError for another number, and for a packet whose place or heading is
+        not finite.
         """
         require_behaviour(behaviour)
         for name in ("x", "y", "heading_rad"):
@@ -104,8 +105,8 @@ class ExperienceMap(PoseGraph):
         if seen.recruited:
             self.forget_view(seen.view)
         before = self._departure()
-        best, observation, seen = self._choose(packet, seen, Senses(views, witness))
-        if best < 0 and self.ground.spare():
+        best, observation, seen = self._choose(packet, seen, Senses(views, verification))
+        if best < 0 and self.ground.prune():
             return False
         if best < 0:
             self._create(packet, seen.view, self.robot_here)
@@ -144,7 +145,7 @@ class ExperienceMap(PoseGraph):
         return any(deleted)
 
     def tie(self, i: int, j: int, moved: Pose2, sigma_m: float) -> None:
-        """[ours] Something besides views measured where j lies in the frame of i, give or take `sigma_m`: a closure, no way.
+        """[ours] Something besides views measured where j lies in the frame of i, give or take `sigma_m`: a loop closure, no way.
 
         A laser does that (`app/recordings/scans.py`); nobody else does.
         test_scan_ties.py::test_a_scan_ties_an_experience_to_an_old_one_where_it_belongs.
@@ -255,7 +256,7 @@ class ExperienceMap(PoseGraph):
         by_place = self.ground.of_view(self, seen.view) if best < 0 else -1
         observation = None
         if best >= 0 and best != self.here:
-            observation = self._measured(best, packet, seen, by.witness)
+            observation = self._measured(best, packet, seen, by.verification)
             best = -1 if observation is None else best
         return max(best, by_place), observation, seen
 
@@ -286,8 +287,8 @@ class ExperienceMap(PoseGraph):
     def _seen_experience(self, packet: Packet, seen: Recognition, by: Senses) -> tuple[int, Recognition]:
         """The experience that the robot sees, the most energetic of those that it can see, -1 for none; and as what.
 
-        [ours] One where it cannot be puts it in doubt. When evidence has won, it is one beyond reach, perhaps on another
-        submap, and the two were merged.
+        [ours] One outside the validation gate puts it in doubt. When evidence has won, it is one beyond the gate, perhaps on
+        another submap, and the two were merged.
         """
         if not self.params.submaps:
             return self._most_energetic(packet, seen.view, math.inf), seen
@@ -295,25 +296,24 @@ class ExperienceMap(PoseGraph):
             return merged
         if self.evidence.idle:
             self._end_of_doubt()
-        reach = self._reach_m
-        best = self._most_energetic(packet, seen.view, reach)
-        if seen.view < 0 or not self.params.match_view or math.isinf(reach):
+        gate = self._gate_m
+        best = self._most_energetic(packet, seen.view, gate)
+        if seen.view < 0 or not self.params.match_view or math.isinf(gate):
             return best, seen
         turns = best >= 0 and self._turns(best, packet, seen)
-        if not turns and (best >= 0 or self._may_be_seen_from(seen.view, reach)):
+        if not turns and (best >= 0 or self._may_be_seen_from(seen.view, gate)):
             return best, seen
         if not self.carried:
             self.evidence.doubt(len(self))
         return -1, seen
 
     @property
-    def _reach_m(self) -> float:
-        """An observation may move the robot by so much: that odometry led it farther astray is less likely than that it was
-        carried."""
+    def _gate_m(self) -> float:
+        """The validation gate: that odometry led the robot farther astray is less likely than that it was carried."""
         return max(SNAP * self.cell_m, math.sqrt(2 * self.evidence.params.unnoticed) * self.pose_filter.sigma_m)
 
     def _turns(self, experience: int, packet: Packet, seen: Recognition) -> bool:
-        """[ours] Whether an observation would turn the robot farther than its heading can be off, wherever it puts it.
+        """[ours] The same gate for the heading: whether an observation would turn the robot farther than that can be off.
 
         test_evidence.py::test_an_observation_that_turns_the_robot_is_outside_the_validation_gate.
         """
@@ -323,18 +323,18 @@ class ExperienceMap(PoseGraph):
         claimed = self.pose(experience).compose(self._observation(experience, packet, seen))
         return abs(wrap_angle(claimed.heading_rad - self.robot_here.heading_rad)) > most
 
-    def _may_be_seen_from(self, view: int, reach_m: float) -> bool:
-        """Whether an experience of this view lies within reach, wherever the packet is; or there is none at all."""
+    def _may_be_seen_from(self, view: int, gate_m: float) -> bool:
+        """Whether an experience of this view lies within the gate, wherever the packet is; or there is none at all."""
         found = self._experiences.of_view(view)
         own = found[self.submap_of[found] == self.submaps.current]
-        return not len(own) or bool(self._away(own, self.robot_here).min() <= reach_m)
+        return not len(own) or bool(self._away(own, self.robot_here).min() <= gate_m)
 
     def _away(self, which: NDArray[np.int64], pose: Pose2) -> NDArray[np.float64]:
         return np.hypot(self.poses[which, 0] - pose.x, self.poses[which, 1] - pose.y)
 
-    def _most_energetic(self, packet: Packet, view: int, reach_m: float) -> int:
+    def _most_energetic(self, packet: Packet, view: int, gate_m: float) -> int:
         return self._experiences.most_energetic(
-            packet, view, self.params, self.robot_here, BLIND * self.cell_m, reach_m, self.submaps.current
+            packet, view, self.params, self.robot_here, BLIND * self.cell_m, gate_m, self.submaps.current
         )
 
     def _merged(self, by: Senses) -> tuple[int, Recognition] | None:
@@ -345,7 +345,7 @@ class ExperienceMap(PoseGraph):
         if belief is None or belief.log_odds < self.evidence.params.merge or by.views is None:
             return None
         observation = self.pose(belief.experience).inverse().compose(belief.pose)
-        if by.witness is not None and by.witness.confirms(self, belief.experience, observation) is None:
+        if by.verification is not None and by.verification.verified(self, belief.experience, observation) is None:
             return None
         view, other = int(self.views[belief.experience]), int(self.submap_of[belief.experience])
         if other != self.submaps.current:
@@ -367,21 +367,23 @@ class ExperienceMap(PoseGraph):
             merge.log_odds, self._arrival = belief.log_odds, None
         else:
             off, sigma = self._off(belief.pose), self.step_sigma_m
-            soften(self.transitions, belief.experience, self.evidence.known, off, sigma)
+            inflate_covariance(self.transitions, belief.experience, self.evidence.known, off, sigma)
 
     def _end_of_doubt(self) -> None:
         self.evidence.end(len(self) if np.any(self.submap_of != self.submaps.current) else 0)
 
     def _measured(
-        self, experience: int, packet: Packet, seen: Recognition, witness: Witness | None
+        self, experience: int, packet: Packet, seen: Recognition, verification: GeometricVerification | None
     ) -> tuple[Pose2, float] | None:
-        """[ours] The observation and how far off it may be (m); as a witness measures it, None if it does not confirm it.
+        """[ours] The observation and how far off it may be (m); as geometric verification measures it, None if it fails.
 
-        test_scan_ties.py::test_the_map_asks_the_witness.
+        test_scan_ties.py::test_the_map_asks_for_geometric_verification.
         """
         observation, sigma = self._observation(experience, packet, seen), self._deviation(seen)
-        confirmed = (observation, math.inf) if witness is None else witness.confirms(self, experience, observation)
-        return (observation, sigma) if confirmed is not None and math.isinf(confirmed[1]) else confirmed
+        if verification is None:
+            return observation, sigma
+        verified = verification.verified(self, experience, observation)
+        return (observation, sigma) if verified is not None and math.isinf(verified[1]) else verified
 
     def _observation(self, experience: int, packet: Packet, seen: Recognition) -> Pose2:
         """The robot's pose in the frame of an experience, whose zone it may enter beside the centre."""
@@ -482,7 +484,8 @@ class ExperienceMap(PoseGraph):
         return self._weight_of(self.params.odometry_drift * way_m)
 
     def _weight_of(self, sigma: float) -> float:
-        """[ours] The weight of a transition in map correction: 1 for odometry over one step, less when its ends are less certain.
+        """[ours] The weight of a transition in map correction, its inverse covariance: 1 for odometry over one step, less when
+        its ends are less certain.
 
         With anchor_sigma and odometry_drift 0 every transition has the same weight, as in the papers.
         """

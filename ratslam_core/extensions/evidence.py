@@ -7,10 +7,11 @@ observation is there than at a wrong place that looked right a metre before: `RI
 unit of evidence; and since wrong places can stay alike for longer, a unit takes a share of what was gathered away.
 Beside all hypotheses stands that of a new place, for and against which nothing speaks.
 
-A robot that noticed that it was carried may be anywhere. One that sees something where it cannot be is in doubt: *here*,
-where odometry has led it, is a rival, too, weighed by what is seen there; what lies farther off than odometry can have
-drifted begins with odds against it, at most those of having been carried unnoticed; and since an exact copy of a place
-may exist, observations say no more than MOST_SAID. So in a twin odometry decides, where observations cannot.
+A robot that noticed that it was carried may be anywhere. One whose observation lies outside the validation gate is in
+doubt: *here*, where odometry has led it, is a rival, too, weighed by what is seen there; what lies farther off than
+odometry can have drifted begins with odds against it, at most those of having been carried unnoticed; and since an exact
+copy of a place may exist, observations say no more than MOST_SAID. So in a twin odometry decides, where observations
+cannot.
 
 The robot *believes* a hypothesis that is likelier than all others together. There it acts; nothing is learnt from it, so
 that it may be wrong at no cost. Where the odds are 1000 to 1, the submap on which it was is *merged*. test_evidence.py.
@@ -48,7 +49,7 @@ FORGOTTEN = PRIOR - 4.0  # log odds below which a hypothesis is given up
 DOUBTED = 15.0  # and, while in doubt, how far they may lie below the likeliest's
 QUIET = 5.0  # units of way after which a doubt is over for which nothing has spoken
 HERE, HERE_RAD = 4.0, 0.6  # cells; a hypothesis so near to where a robot in doubt is mapping, is that it is there
-BELIEVE_IN_DOUBT = 3.0  # nats: who was hardly carried must not wander off in thought for a look-alike
+BELIEVE_IN_DOUBT = 3.0  # nats: who was hardly carried must not wander off in thought for perceptual aliasing
 SAME, SAME_RAD = 2.4, 0.3  # cells; hypotheses this near are one
 PULLS, PULLS_RAD = 2.8, 0.35  # cells; a view this near to a hypothesis says more exactly where it is
 PULL = 0.3  # the share of that way which it goes for a unit of evidence

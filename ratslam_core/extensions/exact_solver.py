@@ -1,13 +1,13 @@
-"""[ours] The fixed point of the sweeps, computed directly from time to time while loops close; and robust closures.
+"""[ours] The fixed point of the sweeps, computed directly from time to time while loops close, without outliers.
 
 Sweeps alone lag behind a growing map. A larger map is solved less often, so that a step costs the same on average.
-Links that the map contradicts weigh less (`robust`). A disagreement that no map can explain, but a bias of the yaw rate
-can, is learnt as that bias (`calibrate`). test_relaxation_sweep.py::test_sweeps_and_solution_agree,
+Links that the map contradicts, outliers, weigh less (`robust`). A disagreement that no map can explain, but a bias of the
+yaw rate can, is learnt as that bias (`calibrate`). test_relaxation_sweep.py::test_sweeps_and_solution_agree,
 test_experience_map_correction.py::{test_a_correction_that_was_hard_is_followed_by_a_long_rest,
 test_a_very_large_map_is_swept_in_some_beats_only}. `relaxation.Relaxation` is the
 plain twin: sweeps and nothing else.
 
-[ours] Closures that no map can bring together with the others are given up, by graduated non-convexity. Odometry between
+[ours] Loop closures that no map can bring together with the others are given up, by graduated non-convexity. Odometry between
 experiences made one after the other is sure; every other row rests on an observation and may be false. At first all of them
 count. Then, round by round, those that the map contradicts count less, in the beginning gently, in the end wholly or not
 at all (truncated least squares). So many false closures are found out together; and since each solution asks all of them

@@ -1,4 +1,4 @@
-"""[ours] Ground that is recognised often enough gets no more views and experiences.
+"""[ours] Map density and pruning: ground that is recognised often enough gets no more views and experiences.
 
 The papers' robot recruits a view for each observation that is unlike all others, and an experience for each view at a new
 state of the pose cells, so its memory grows for as long as it drives, even in an office that never changes. Here each
@@ -55,17 +55,17 @@ class Map(Protocol):
     def robot_here(self) -> Pose2: ...
 
 
-@kind("familiar ground/2")
+@kind("familiar ground/3")
 class FamiliarGround:
     """`familiar` says whether the robot is at a place that is known well enough."""
 
     def __init__(self) -> None:
         self.familiar = False
-        self.spared = 0  # observations so far that would have become experiences
+        self.pruned = 0  # observations so far that would have become experiences
         self.adopted = 0  # observations so far that were taken for an experience since it is near in the map
         self.faded = -1  # the view whose room the next one gets, -1 for none: the place has room
         self.views_faded = 0  # views so far that another took the room of
-        self.links_spared = 0
+        self.links_pruned = 0
         self._let_go = False  # what was seen in this step
         self._share = np.zeros(1024)
         self._unseen = np.zeros(1024, np.int64)  # counted observations near each experience since it was recognised
@@ -81,9 +81,9 @@ class FamiliarGround:
     def let_go(self) -> dict[str, int]:
         """How much was not kept so far, for people to see."""
         return {
-            "sights": self.spared,
+            "sights": self.pruned,
             "experiences_adopted": self.adopted,
-            "links": self.links_spared,
+            "links": self.links_pruned,
             "views_faded": self.views_faded,
         }
 
@@ -109,10 +109,10 @@ class FamiliarGround:
         robot = map_.robot_here
         return int(own[np.argmin(np.hypot(map_.poses[own, 0] - robot.x, map_.poses[own, 1] - robot.y))])
 
-    def spare(self) -> bool:
+    def prune(self) -> bool:
         """Whether to let go what was seen, which fits no experience."""
         self._let_go = self.familiar
-        self.spared += self.familiar
+        self.pruned += self.familiar
         return self.familiar
 
     def well_tied(self, t: Transitions, i: int, j: int) -> bool:
@@ -122,7 +122,7 @@ class FamiliarGround:
         test_familiar_ground.py::test_no_place_gets_links_without_end.
         """
         tied = min(_ties(t, i), _ties(t, j)) >= LINKS
-        self.links_spared += tied
+        self.links_pruned += tied
         return tied
 
     def note(self, map_: Map, seen: Recognition, created: bool, odometry: Odometry, lost: bool, beats: int = 1) -> None:
@@ -173,7 +173,7 @@ class NewGround:
 
     familiar = False
     faded = -1
-    spared = adopted = links_spared = views_faded = 0
+    pruned = adopted = links_pruned = views_faded = 0
 
     @property
     def let_go(self) -> dict[str, int]:
@@ -185,7 +185,7 @@ class NewGround:
     def of_view(self, _map: Map, _view: int) -> int:
         return -1
 
-    def spare(self) -> bool:
+    def prune(self) -> bool:
         return False
 
     def well_tied(self, _t: Transitions, _i: int, _j: int) -> bool:

@@ -1,7 +1,7 @@
 """[ours] Between each experience and the one made before it stands odometry alone: the backbone of map correction.
 
 Observations and odometry never share a row. An observation can be wrong by decimetres, or false; odometry is right to a
-few per cent unless the robot is carried or its wheels slip, which is found out later (`soften`).
+few per cent unless the robot is carried or its wheels slip, which is found out later (`inflate_covariance`).
 test_experience_map_transitions.py::test_no_observation_is_averaged_into_the_backbone. `NoOdometryEdges` is the plain twin: in
 the papers only transitions tie experiences.
 """
@@ -71,16 +71,17 @@ class NoOdometryEdges:
         """A transition is learnt, and nothing else."""
 
 
-def soften(t: Transitions, first: int, last: int, off_m: float, sigma: float) -> NDArray[np.intp]:
-    """Take the backbone as uncertain where it may be torn after experience `first`, up to `last`; returns these rows.
+def inflate_covariance(t: Transitions, first: int, last: int, off_m: float, sigma: float) -> NDArray[np.intp]:
+    """Inflate the covariance of the odometry constraints that may be broken after experience `first`, up to `last`; returns
+    their rows.
 
     [ours] Observations proved that the robot is not where odometry led: unnoticed, it was carried, or its wheels slipped.
     The loop closures that follow put both sides of these rows where they belong. With `experience_map.submaps` off
-    nothing is proved wrong. test_torn.py::test_an_unnoticed_kidnap_is_found_in_the_backbone.
+    nothing is proved wrong. test_broken_odometry.py::test_an_unnoticed_kidnap_is_found_in_the_backbone.
 
     off_m: by how much they were wrong together; sigma: of odometry over one step, m.
     """
-    rows = torn(t, first, last)
+    rows = broken(t, first, last)
     if len(rows):
         t.weight[rows] = 1 / (1 / t.weight[rows] + (off_m / sigma) ** 2 / len(rows))
         t.believed[rows] = np.minimum(t.believed[rows], t.weight[rows])
@@ -93,8 +94,8 @@ def open_way_m(t: Transitions, first: int, last: int) -> float:
     return float(np.hypot(t.move[rows, 0], t.move[rows, 1]).sum())
 
 
-def torn(t: Transitions, first: int, last: int) -> NDArray[np.intp]:
-    """The rows of the last stretch of the backbone, between these experiences, that no loop closure bridges: what went wrong
+def broken(t: Transitions, first: int, last: int) -> NDArray[np.intp]:
+    """The broken odometry constraints: the last stretch, between these experiences, that no loop closure bridges. What went wrong
     did not happen between places that one ties together past the gap."""
     rows = _unbridged(t, first, last)
     newer = t.ends[rows].max(axis=1)

@@ -87,7 +87,7 @@ def _evidence(evidence: Evidence, n: int, submaps: int) -> None:
 
 
 def _ground(ground: FamiliarGround, n: int, views: int) -> None:
-    for name in ("spared", "adopted", "links_spared", "views_faded"):
+    for name in ("pruned", "adopted", "links_pruned", "views_faded"):
         whole(name, getattr(ground, name))
     share = array("shares", ground._share, np.float64, (None,))
     true(len(share) >= n, "each experience must have a share of recognised observations")

@@ -107,8 +107,8 @@ class ViewLinks:
     def recall(self, view: int, lost: bool = False) -> tuple[NDArray[np.int32], NDArray[np.float32]]:
         """What the active view injects: min(beta, s_max) per link. ACRA 2004 eq. 4.
 
-        [ours] Scaled down so that all links together inject at most `injection`: one look-alike must not move a packet,
-        but several views that agree must. A lost robot's view injects LOST in sum.
+        [ours] Scaled down so that all links together inject at most `injection`: one view must not move a packet, since it may
+        be perceptual aliasing, but several that agree must. A lost robot's view injects LOST in sum.
         test_view_links.py::test_injection_is_capped_in_sum.
         """
         cells, strength = self.of(view)

@@ -128,7 +128,7 @@ class ExperienceMapParams:
     link_confidence: float = param(
         0.2, "a link with less confidence is deleted; 0 = never", 0.0, 1.0, symbol="c_min", source="D 3.4; value ours")
     link_trials: int = param(5, "least trials before a link is deleted", 1, 1000, symbol="n_min")
-    robust: bool = param(True, "observations and odometry that the map contradicts weigh less in the exact correction")
+    robust: bool = param(True, "outliers weigh less in the exact correction: observations and odometry that the map contradicts")
     calibrate: bool = param(True, "learn the bias of the yaw rate from what the map cannot explain")
     sweep: str = param(
         "by experience",
@@ -211,7 +211,7 @@ class EvidenceParams:
     merge: float = param(6.9, "log odds above which submaps are merged", 0.0, 100.0, "nats")
     unnoticed: float = param(11.0, "log odds against having been carried unnoticed", 0.0, 100.0, "nats")
     gate_rad: float = param(
-        3.2, "an observation that would turn the robot farther than this puts it in doubt; 3.2 = none does, however far it turns",
+        3.2, "validation gate: an observation that would turn the robot farther puts it in doubt; 3.2 = none does",
         0.05, 3.2, "rad")
 
     def __post_init__(self) -> None:

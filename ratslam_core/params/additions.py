@@ -28,7 +28,7 @@ ADDITIONS = (
     Addition(
         "capped injection",
         "all links of a view together inject at most a fixed amount",
-        "one look-alike must not move a packet; several views that agree must",
+        "one view, perhaps perceptual aliasing, must not move a packet; several that agree must",
         {"local_view.capped": False},
     ),
     Addition(
@@ -63,8 +63,8 @@ ADDITIONS = (
     ),
     Addition(
         "robust closures",
-        "links that the map contradicts weigh less in its exact correction; closures that no map brings together are given up",
-        "wrong closures must not bend the whole map",
+        "outliers, which the map contradicts, weigh less in its correction; closures that no map brings together are given up",
+        "false loop closures must not bend the whole map",
         {"experience_map.robust": False},
     ),
     Addition(
@@ -88,7 +88,7 @@ ADDITIONS = (
     Addition(
         "law of evidence",
         "what is seen where the robot cannot be is weighed; a robot that was carried maps a submap, merged at odds of 1000 to 1",
-        "look-alikes that are believed at once tie places together that are far apart",
+        "perceptual aliasing, believed at once, makes false loop closures between places far apart",
         {"experience_map.submaps": False},
     ),
     Addition(

@@ -107,13 +107,13 @@ class Experiences:
         p: ExperienceMapParams,
         robot: Pose2,
         blind_m: float,
-        reach_m: float = math.inf,
+        gate_m: float = math.inf,
         submap: int = 0,
     ) -> int:
         """The experience with the most energy above the threshold, the oldest of equals; -1 for none.
 
-        Where views tell experiences apart (`match_view`), only those count that are within `reach_m` of the robot in the
-        map and lie on this submap.
+        Where views tell experiences apart (`match_view`), only those count that are on this submap and within `gate_m` of the
+        robot in the map, the validation gate.
 
         [ours] When there is nothing to see, only the pose cells tell places apart, and they may use the same cells for
         places far apart. The experience must then be within `blind_m` of the robot in the map, too.
@@ -123,7 +123,7 @@ class Experiences:
         state = (*self._state(packet), *self.shape, p.zone_xy, p.zone_theta)
         if p.match_view:
             newest = self._newest_of_view.get(view, -1)
-            near = min(blind_m, reach_m) if view < 0 else reach_m
+            near = min(blind_m, gate_m) if view < 0 else gate_m
             return _best_in_chain(
                 newest, self._before_of_view, self.at, *state, old, -1, p.threshold, self.pose, robot.x, robot.y, near,
                 self.submap, submap,

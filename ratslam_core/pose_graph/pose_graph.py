@@ -30,7 +30,7 @@ class PoseGraph:
         self._experiences = Experiences(shape)
         self.transitions = Transitions()
         self.yaw_bias = 0.0  # rad/s, learnt: odometry turns too far by so much
-        self.closures = 0  # links made to experiences that existed before
+        self.closures = 0  # loop closures: links made to experiences that existed before
         self.steps = 0  # of correction
         self._driven_m = self._driving_s = 0.0
 

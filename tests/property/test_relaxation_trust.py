@@ -42,9 +42,9 @@ def carried_chain(observations: int) -> tuple[np.ndarray, np.ndarray]:
 @also_interpreted(relaxation)
 def test_many_observations_break_the_link_of_a_kidnap() -> None:
     off, trust = carried_chain(observations=20)
-    torn = np.flatnonzero(trust[:39] < 0.5)
-    assert len(torn) >= 1
-    assert np.abs(off[30:]).max() < 0.3  # beyond the torn link the map is right
+    broken = np.flatnonzero(trust[:39] < 0.5)
+    assert len(broken) >= 1
+    assert np.abs(off[30:]).max() < 0.3  # beyond the broken link the map is right
     assert trust[39:].min() > 0.5
 
 

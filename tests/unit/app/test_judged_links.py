@@ -1,4 +1,4 @@
-"""False observations, torn odometry and closed loops, on small maps of which everything is known."""
+"""False observations, broken odometry and closed loops, on small maps of which everything is known."""
 
 from __future__ import annotations
 

@@ -228,15 +228,15 @@ class Robot:
             packet = Packet(32 + 4 * self.pose.x % 64, 32 + self.pose.y % 64, self.pose.heading_rad, 1.0)
             self.step(packet, Recognition(view, new, view, 1.0, 0.0))
 
-    def look_alike(self, view: int) -> None:
-        """See a view where the pose cells were when it was taken."""
+    def see_aliased(self, view: int) -> None:
+        """Perceptual aliasing: see a view where the pose cells were when it was taken."""
         self.step(Packet(*self.map.cell_state(view)[:3], 1.0), Recognition(view, False, view, 1.0, 0.0))
 
     def step(self, packet: Packet, seen: Recognition) -> None:
-        self.map.step(packet, seen, DRIVE, views=self.views, witness=self)  # type: ignore[arg-type]
+        self.map.step(packet, seen, DRIVE, views=self.views, verification=self)  # type: ignore[arg-type]
 
-    def confirms(self, _map: object, _experience: int, look: Pose2) -> tuple[Pose2, float] | None:
-        return (look, math.inf) if self.confirmed else None
+    def verified(self, _map: object, _experience: int, observation: Pose2) -> tuple[Pose2, float] | None:
+        return (observation, math.inf) if self.confirmed else None
 
     def carry(self, to: Pose2, *, noticed: bool = True) -> None:
         if noticed:
@@ -276,7 +276,7 @@ def test_what_is_believed_changes_no_map_and_a_submap_is_merged_as_a_whole() -> 
     assert np.abs(off).max() < 0.5
 
 
-def test_a_submap_is_not_merged_where_a_witness_does_not_confirm_it() -> None:
+def test_a_submap_is_not_merged_without_geometric_verification() -> None:
     robot = Robot()
     robot.carry(Pose2(2.0, 0.1, 0.0))
     robot.confirmed = False
@@ -294,7 +294,7 @@ def test_a_submap_is_not_merged_where_a_witness_does_not_confirm_it() -> None:
 def test_without_submaps_the_first_observation_is_believed() -> None:
     robot = Robot(submaps=False)
     robot.carry(Pose2(2.0, 0.1, 0.0))
-    robot.look_alike(4)
+    robot.see_aliased(4)
     assert robot.map.active == 4
     assert robot.map.evidence.known == 0
 
@@ -379,9 +379,9 @@ def test_a_doubt_ends_when_nothing_speaks_for_it() -> None:
     assert not evidence.idle
 
 
-def test_one_look_alike_closes_no_loop() -> None:
+def test_perceptual_aliasing_closes_no_loop() -> None:
     robot = Robot(recognises=True)
-    robot.look_alike(3)
+    robot.see_aliased(3)
     assert robot.map.evidence.in_doubt
     assert robot.map.active == len(robot.map) - 1  # it is taken for a new place
     assert (robot.map.closures, robot.map.belief) == (0, None)
@@ -398,7 +398,7 @@ def test_who_was_carried_unnoticed_gives_way_and_its_odometry_with_it() -> None:
         assert robot.pose.x < 11.9
         if map_.evidence.in_doubt:
             assert np.array_equal(map_.poses[:known], before)
-            assert map_.evidence.known == known  # what is made in doubt is no witness
+            assert map_.evidence.known == known  # what is made in doubt says nothing of where it is
     assert map_.corrected == 1
     assert robot.off_m < 0.5
     softer = map_.transitions.weight[: map_.transitions.count] < weights[: map_.transitions.count]
@@ -492,7 +492,7 @@ def test_the_prior_is_what_odometry_can_have_drifted(off: float, drift: float) -
 
 
 def test_an_observation_that_turns_the_robot_is_outside_the_validation_gate() -> None:
-    """As near as it puts the robot: one whose heading is sure is not turned by a look-alike. 3.2 is the plain twin."""
+    """As near as it puts the robot: one whose heading is sure is not turned by perceptual aliasing. 3.2 is the plain twin."""
     packet = Packet(32.0, 32.0, 0.0, 1.0)
     for gate_rad, held in ((3.2, False), (0.8, True)):
         map_ = ExperienceMap(SHAPE, CELL_M, ExperienceMapParams(sweeps=0), evidence=EvidenceParams(gate_rad=gate_rad))

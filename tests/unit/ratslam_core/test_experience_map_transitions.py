@@ -148,7 +148,7 @@ def test_odometry_past_known_places_keeps_the_chain_rigid() -> None:
     robot.see(0, new=True)
     robot.go(1.0, 0.2, 1, new=True)
     first_new = robot.pose
-    robot.see(0, difference=5.0, packet=robot.packet(Pose2(0.0, 0.0, 0.0)))  # a look-alike
+    robot.see(0, difference=5.0, packet=robot.packet(Pose2(0.0, 0.0, 0.0)))  # perceptual aliasing
     robot.go(0.8, -0.1, 2, new=True)
     assert robot.map.links.tolist() == [[0, 1], [1, 0], [0, 2]]
     assert robot.map.link_count == len(robot.map.moves) == len(robot.map.link_times) == 3

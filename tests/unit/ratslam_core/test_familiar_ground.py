@@ -65,7 +65,7 @@ def test_a_place_becomes_familiar_when_it_is_recognised() -> None:
 def test_on_familiar_ground_an_unknown_observation_is_let_go() -> None:
     visitor = Visitor(100)
     assert not visitor.unknown()
-    assert (len(visitor.map), visitor.map.active, visitor.ground.spared) == (1, 0, 1)
+    assert (len(visitor.map), visitor.map.active, visitor.ground.pruned) == (1, 0, 1)
     assert visitor.map.robot.x == pytest.approx(101 * 1e-4)  # odometry goes on
 
 
