@@ -110,7 +110,7 @@ class MomentReader:
 
 LEAST_SCALE, MOST_SCALE = 0.02, 50.0
 UNRELATED, UNRELATED_SCANS = 0.0025, 0.002  # share of unrelated views that may be taken for one another
-LOOK_SIGMA_M = 0.35  # of an observation that is only just believed, in the office
+OBSERVATION_SIGMA_M = 0.35  # of an observation that is only just believed, in the office
 LASER_SHIFT = 5  # columns of 3 degrees: a laser sees so well that a turn need not spoil a view
 LASER_GATE_RAD = 0.8  # scans laid on scans keep the heading: what turns it farther at once is perceptual aliasing
 WIDTH_ERROR = 1.1  # the camera's width is measured to a tenth
@@ -191,7 +191,7 @@ def _views(recording: Recording, seen: Survey, scale: float) -> dict[str, Value]
     threshold, own = float(np.quantile(seen.unlike, share)), FRONT_ENDS[_front_end(recording)].threshold
     values["local_view.match_threshold"] = threshold / own
     # Where most views are the same, as of a camera that stood still, the threshold is 0.
-    values["experience_map.anchor_sigma"] = min(LOOK_SIGMA_M * scale / threshold, 1.0) if threshold > 0 else 1.0
+    values["experience_map.anchor_sigma"] = min(OBSERVATION_SIGMA_M * scale / threshold, 1.0) if threshold > 0 else 1.0
     return values
 
 

@@ -10,7 +10,7 @@ plain twin: sweeps and nothing else.
 [ours] Loop closures that no map can bring together with the others are given up, by graduated non-convexity. Odometry between
 experiences made one after the other is sure; every other row rests on an observation and may be false. At first all of them
 count. Then, round by round, those that the map contradicts count less, in the beginning gently, in the end wholly or not
-at all (truncated least squares). So many false closures are found out together; and since each solution asks all of them
+at all (truncated least squares). So many false loop closures are found out together; and since each solution asks all of them
 anew, one that was believed for a while is let go when others contradict it, and one that was given up counts again when
 they agree. Yang, Antonante, Tzoumas and Carlone, RA-L 2020, eqs. 12-14.
 test_graduated_trust.py::test_false_closures_are_found_out. With `experience_map.robust` off nothing is given up.
@@ -27,7 +27,7 @@ from ratslam_core.pose_graph.pose_graph import STEP_SIGMA, TURN_CELLS, PoseGraph
 
 MOST_SWEPT = 8000  # experiences a beat, on average: a larger map is swept in every second beat, or third ...
 WORK_A_STEP = 1e5  # of exact corrections, on average over the beats; so much takes about half a millisecond
-TRIAL = 36.0  # sigma squared; all closures are put on trial when the map leaves one of them farther off
+TRIAL = 36.0  # sigma squared; all loop closures are put on trial when the map leaves one of them farther off
 
 
 @kind("exact solver/2")
@@ -54,7 +54,7 @@ class ExactSolver:
         given_up = self._given_up(graph)
         learnt, work = self._settle(graph, None)
         if graph.params.robust and self._contradicted(graph, given_up):
-            graph.poses[:] = before  # many false closures would have led it far astray, and the bias, too
+            graph.poses[:] = before  # many false loop closures would have led it far astray, and the bias, too
             self._learn(graph, -learnt)
             share, trying = kept(*_given(graph), self._odometry(graph), graph.cell_m)
             work += trying + self._settle(graph, share)[1]
@@ -144,8 +144,8 @@ def trust(
     return np.where(chain, odometry, observation)
 
 
-SIGMA = 0.6  # cells: least error that a closure is taken to have
-BAR = 9.0  # sigma squared; a closure that is farther off is given up
+SIGMA = 0.6  # cells: least error that a loop closure is taken to have
+BAR = 9.0  # sigma squared; a loop closure that is farther off is an outlier, and given up
 GROWTH = 1.4  # how much more strictly each round judges than the one before
 MOST_ROUNDS = 100
 DECIDED = 0.01  # a share this near to 0 or 1 no longer changes

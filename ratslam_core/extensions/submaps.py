@@ -1,8 +1,8 @@
 """[ours] A robot that was carried away maps a submap, until the evidence says where it belongs.
 
-While the robot does not know where it is, a single observation that is believed would tie what it sees now to a place where it
-is not, and bend both. On a submap it maps what is there. Where the evidence is strong enough (`evidence.py`), the younger
-submap is moved as a whole, and a closure ties the two. test_evidence.py::{
+While the robot does not know where it is, a single false loop closure would tie what it sees now to a place where it is
+not, and bend both. On a submap it maps what is there. Where the evidence is strong enough (`evidence.py`), the younger
+submap is moved as a whole, and a loop closure ties the two. test_evidence.py::{
 test_what_is_believed_changes_no_map_and_a_submap_is_merged_as_a_whole,test_the_younger_submap_becomes_part_of_the_older}.
 A merge may be wrong, in a twin of the right place. So it is remembered which experiences came with it and how sure it was,
 until the robot has driven on for long; when evidence proves that it is elsewhere, all that tied them to the older map goes,
