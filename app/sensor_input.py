@@ -10,12 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ratslam_core import Estimate, ExperienceMap, Odometry, RatSlam
-from ratslam_core.parts import Witness
+from ratslam_core.parts import GeometricVerification
 
 Lap = Callable[[str], None]  # called with each part of a tick that is done
 
 
-class Ties(Witness, Protocol):
+class Ties(GeometricVerification, Protocol):
     """What ties the experiences of one brain by the scans of a laser."""
 
     def see(self, ranges_m: NDArray[np.float64] | None) -> None: ...
@@ -45,7 +45,7 @@ class SensorInput:
         numbers = brain.params.local_view.front_end == "scene numbers"
         estimate = brain.step(
             self.image, self.odometry, scene=self.scene if numbers else None, behaviour=self.behaviour,
-            ranges_m=self.ranges_m, watch=watch, witness=ties,
+            ranges_m=self.ranges_m, watch=watch, verification=ties,
         )  # fmt: skip
         if ties is not None and estimate.created:
             ties.made(brain.experience_map)

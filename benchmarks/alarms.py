@@ -49,7 +49,7 @@ def main() -> None:
         for seed in args.seeds:
             session = Session(load_world(world), seed, Config())
             moments = list(drive(session, args.minutes))
-            false = session.brain.experience_map.islands.begun
+            false = session.brain.experience_map.submaps.begun
             missed = np.mean([not noticed(session, *pair) for pair in kidnaps(moments, seed)])
             print(
                 f"{world:10} seed {seed}: {100 * missed:5.2f} % missed, {false} false alarms in {len(moments):,} ticks",

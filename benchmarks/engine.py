@@ -221,7 +221,7 @@ def _close(made: ExperienceMap, rng: np.random.Generator, odometry: Odometry) ->
 def _long_map(experiences: int, links: int) -> ExperienceMap:
     """A map of so many experiences from a random walk, with closures between random pairs."""
     rng = np.random.default_rng(3)
-    believing = ExperienceMapParams(islands=False)  # or closures of places far away would be new places
+    believing = ExperienceMapParams(submaps=False)  # or closures of places far away would be new places
     made = ExperienceMap((36, 64, 64), 0.25, believing)
     odometry = Odometry(0.3, 0.05, 0.1)
     for k in range(experiences):

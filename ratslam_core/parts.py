@@ -14,13 +14,13 @@ from ratslam_core.pose_graph.pose_graph import PoseGraph
 from ratslam_core.types import Odometry, Packet, Pose2, Recognition
 
 
-class Witness(Protocol):
-    """[ours] A sense that measures where the robot is to a known experience, such as a laser."""
+class GeometricVerification(Protocol):
+    """[ours] Another sense, such as a laser, that measures where the robot is to a known experience."""
 
-    def confirms(self, map_: Any, experience: int, look: Pose2, /) -> tuple[Pose2, float] | None:
-        """The robot in the frame of the experience, and give or take what (m), near where a look puts it.
+    def verified(self, map_: Any, experience: int, observation: Pose2, /) -> tuple[Pose2, float] | None:
+        """The robot in the frame of the experience, and give or take what (m), near where an observation puts it.
 
-        map_: an `ExperienceMap`. An infinite error: it cannot say, so that the look counts as it is. None: it is not there.
+        map_: an `ExperienceMap`. An infinite error: it cannot say, so the observation counts as it is. None: it is not there.
         """
         ...
 
@@ -30,7 +30,7 @@ class Room(Protocol):
 
     @property
     def familiar(self) -> bool:
-        """The place is known so well that an unknown sight becomes no view."""
+        """The place is known so well that an unknown observation becomes no view."""
         ...
 
     @property
@@ -124,9 +124,9 @@ class ExperienceMapPart(Protocol):
 
     here: int  # the experience at which the map is learnt
     carried: bool  # it knows that it was carried away, and has not been put onto the map again
-    agrees: bool  # whether the last look agreed with where the robot believed itself to be
+    agrees: bool  # whether the last observation agreed with where the robot believed itself to be
     yaw_bias: float  # rad/s, learnt: odometry turns too far by so much
-    ground: Any  # a `FamiliarGround`, or `NewGround()`, with which every sight is learnt
+    ground: Any  # a `FamiliarGround`, or `NewGround()`, with which every observation is learnt
 
     def __len__(self) -> int: ...
     @property
@@ -153,7 +153,7 @@ class ExperienceMapPart(Protocol):
 
     def step(
         self, packet: Packet, seen: Recognition, odometry: Odometry, behaviour: int, /, *,
-        beats: int, views: LocalViewPart, witness: Witness | None,
+        beats: int, views: LocalViewPart, verification: GeometricVerification | None,
     ) -> bool:  # fmt: skip
         """Find or make the active experience; True when it is new. The robot has moved so in each of the beats."""
         ...

@@ -24,7 +24,14 @@ from ratslam_core.local_view.recogniser import NOTHING, LocalView
 from ratslam_core.local_view.view_links import ViewLinks, VisualAssociation
 from ratslam_core.occupancy_grid import MapGrid, OccupancyGrid
 from ratslam_core.params import OccupancyParams, PoseCellParams, RatSlamParams
-from ratslam_core.parts import ExperienceMapPart, KidnapDetectorPart, LocalViewPart, Optimiser, PoseCellsPart, Witness
+from ratslam_core.parts import (
+    ExperienceMapPart,
+    GeometricVerification,
+    KidnapDetectorPart,
+    LocalViewPart,
+    Optimiser,
+    PoseCellsPart,
+)
 from ratslam_core.pose_cells.network import PoseCells
 from ratslam_core.pose_graph.relaxation import Relaxation
 from ratslam_core.pose_graph.transitions import require_behaviour
@@ -101,15 +108,15 @@ class RatSlam:
         behaviour: int = 0,
         ranges_m: NDArray[np.floating] | None = None,
         watch: Callable[[str], None] | None = None,
-        witness: Witness | None = None,
+        verification: GeometricVerification | None = None,
     ) -> Estimate:
         """One iteration at the end of a movement: `odometry` is what the wheels report of it, `image` what is seen then.
 
         image: (h, w) or (h, w, 3) uint8; scene: its number, for the front end "scene numbers", which ignores the image;
         behaviour: 0 to 15, the local movement that led here (D 3.2); ranges_m: the sonars' ranges in m, shape
         (n_sonars,), for the front end "image and sonars", the occupancy pictures and to notice a kidnap; watch: called
-        after each of STAGES with its name; it may look but change nothing; witness: looks that it does not confirm are
-        none. ValueError when one of them is not valid; nothing has changed then.
+        after each of STAGES with its name; it may look but change nothing; verification: drops observations that it
+        does not confirm. ValueError when one of them is not valid; nothing has changed then.
 
         [ours] Vision, attractor and map act in beats of 0.1 s (`beats.py`). Between two beats nothing is looked at, and
         only the robot's pose in the map moves on.
@@ -124,7 +131,7 @@ class RatSlam:
         self._notice_kidnap(scan, tick)
         packet, jumped = self.localisation.step(seen, self.local_view.strength(seen), tick, self.carried, watch)
         created = map_.step(
-            packet, seen, tick.latest, behaviour, beats=tick.beats, views=self.local_view, witness=witness
+            packet, seen, tick.latest, behaviour, beats=tick.beats, views=self.local_view, verification=verification
         )
         self._settle(seen, created, tick)
         map_.ground.note(map_, seen, created, tick.moved, self.carried, tick.beats)

@@ -59,7 +59,7 @@ class Judged:
         return self.off_m > FALSE_M
 
 
-def looks(experiences: ExperienceMap, births: Births) -> Judged:
+def observations(experiences: ExperienceMap, births: Births) -> Judged:
     """The links that rest on an observation. A false one makes one place of two."""
     return _judged(experiences, births, ~experiences.transitions.chain)
 

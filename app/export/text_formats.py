@@ -141,7 +141,7 @@ def graphml_text(session: Session) -> bytes:
             key = {"id": f"{kind}-{name}", "for": kind, "attr.name": name, "attr.type": value}
             Tree.SubElement(root, "key", key)
     graph = Tree.SubElement(root, "graph", id=session.source.name, edgedefault="directed")
-    columns = zip(map_.poses.tolist(), map_.views.tolist(), map_.island_of.tolist(), strict=True)
+    columns = zip(map_.poses.tolist(), map_.views.tolist(), map_.submap_of.tolist(), strict=True)
     for i, (pose, view, island) in enumerate(columns):
         _add(Tree.SubElement(graph, "node", id=str(i)), "node", dict(zip(_NODE, (*pose, view, island), strict=True)))
     for (i, j), time_s in zip(map_.links.tolist(), map_.link_times.tolist(), strict=True):

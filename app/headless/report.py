@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from app.evaluation import Coverage, backbone, looks, loops_closed
+from app.evaluation import Coverage, backbone, loops_closed, observations
 from app.session import Session
 from disk import encode
 from ratslam_core import RatSlam, save_brain
@@ -57,7 +57,7 @@ def judged(session: Session) -> dict[str, Any]:
     map_error, odometry_error = evaluation.errors(map_)
     consistency = evaluation.revisit_consistency
     births = evaluation.births(len(map_))
-    found, floor = looks(map_, births), session.simulator.free_space
+    found, floor = observations(map_, births), session.simulator.free_space
     islands, true = floor.islands(ISLAND_M2), found.ends[~found.false]
     return {
         "error_m": {"map": rounded(map_error), "odometry": rounded(odometry_error)},

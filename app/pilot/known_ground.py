@@ -2,7 +2,7 @@
 sonars saw from there. Where they saw open floor that it never drove on, the map is thin.
 
 test_known_ground.py::{test_open_floor_that_was_never_driven_on_is_an_opening, test_what_was_driven_on_is_no_opening,
-test_an_opening_is_tried_again_later, test_what_lies_on_another_island_hides_no_opening}.
+test_an_opening_is_tried_again_later, test_what_lies_on_another_submap_hides_no_opening}.
 """
 
 from __future__ import annotations
@@ -96,7 +96,7 @@ class KnownGround:
         """Experiences (k,) and the places (k, 2), m, map frame, that were seen from there and never driven on.
 
         least: so many beams must have seen an opening; a single one may be a false echo. Only what lies on the robot's own
-        island counts: where the others lie to it is unknown.
+        submap counts: where the others lie to it is unknown.
         """
         rows, beams = np.nonzero(self._seen_m[: self.count] >= OPENING_M)
         away = np.minimum(self._seen_m[rows, beams] - OPENING_GAP_M, OPENING_MOST_M)
@@ -113,8 +113,8 @@ class KnownGround:
         fine: int, least: int,
     ) -> tuple[NDArray[np.int64], _Array]:  # fmt: skip
         """Of the places so far `away` (m) along these beams of these experiences, those that nothing known is near."""
-        poses, islands = experiences.poses[: self.count], experiences.island_of[: self.count]
-        own = islands == islands[experiences.active]
+        poses, submaps = experiences.poses[: self.count], experiences.submap_of[: self.count]
+        own = submaps == submaps[experiences.active]
         rows, beams, away = rows[own[rows]], beams[own[rows]], away[own[rows]]
         done = [tried[:3] for tried in self._done if own[tried[0]] and tried[3] > self.now_s]
         heading = poses[rows, 2] + self._angles[beams]

@@ -50,7 +50,7 @@ class PilotParams:
     openings_every: int = param(
         2, "of so many trips one goes into an opening, the others to places long not visited", 1, 1000)
     search: bool = param(
-        True, "on an island, as after a kidnap, it only goes on to new ground, so that it meets the rest of its map")
+        True, "on a submap, as after a kidnap, it only goes on to new ground, so that it meets the rest of its map")
     return_after_m: float = param(
         25.0, "after so long a way on new ground the robot goes back to old ground; twice as long each time it came back",
         1.0, 1e5, "m")

@@ -38,7 +38,7 @@ class Pilot:
         self._hand = (0.0, 0.0)  # speed, yaw rate
         self._asked = (0.0, 0.0)  # speed, yaw rate of the last tick
         self._astray = False  # has a goal, but explores since no route to it is known
-        self._carried = False  # away from the goal, to an island: it looks for the rest of its map
+        self._carried = False  # away from the goal, to a submap: it looks for the rest of its map
         self._freeing = Freeing(rng)
         self._bars = Bars()
         self._seeker = Seeker(sonar_angles_rad, self._bars)

@@ -43,17 +43,17 @@ def of_its_place(experiences: ExperienceMap, experience: int, p: PilotParams) ->
     """The experiences that stand for the same place as this one, which comes first, the nearest before the others.
 
     A place has several, since the robot made one for each way that it faced and for each way that it came. They are those
-    within `goal_place_m`, on the robot's own island; if none lies there, and thus can be reached, on the island of this
+    within `goal_place_m`, on the robot's own submap; if none lies there, and thus can be reached, on the submap of this
     one. With `goal_place_m` 0 it stands alone.
     test_goal_place.py::{test_whichever_way_they_face, test_what_can_be_reached_comes_first}.
     """
     if p.goal_place_m <= 0:
         return (experience,)
-    poses, islands = experiences.poses, experiences.island_of
+    poses, submaps = experiences.poses, experiences.submap_of
     apart = np.hypot(poses[:, 0] - poses[experience, 0], poses[:, 1] - poses[experience, 1])
     near = np.flatnonzero(apart <= p.goal_place_m)
-    own = islands[near] == islands[experiences.active]
-    near = near[own if own.any() else islands[near] == islands[experience]]
+    own = submaps[near] == submaps[experiences.active]
+    near = near[own if own.any() else submaps[near] == submaps[experience]]
     order = np.lexsort((near != experience, apart[near]))  # some lie at exactly the same place
     return tuple(near[order].tolist())
 
@@ -130,8 +130,8 @@ class RouteFollower:
         """[ours] Whether the robot was carried to a submap that no experience of the goal lies on. Where it is to the
         goal is unknown, and there is no way before the two are merged.
         test_routes.py::test_carried_away_from_the_goal_it_looks_for_the_way_back."""
-        islands = experiences.island_of
-        if (islands[self.goals] == islands[experiences.active]).any():
+        submaps = experiences.submap_of
+        if (submaps[self.goals] == submaps[experiences.active]).any():
             return False
         self.failed, self._route, self._age_s, self._plan_in_s = False, None, math.inf, 0.0
         self._nearest_m, self._since_nearer_s = math.inf, 0.0

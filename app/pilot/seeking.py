@@ -5,14 +5,14 @@ in this order: back to old ground, if it has been on new ground for long, so tha
 (it dares twice as far each time it came back, since its wheels are then known better); along known ground that is near
 but far by the links, which closes a loop, if `loop_share` is set. Only when nothing of that is left does it wander, and
 go into openings near by; in a large map by turns with where it has not been for longest, since openings alone lead on
-and on into new corridors and close no loop. On an island, as after a kidnap, it looks for the rest of its map: it does
-not go back, but into one opening after the other, round the posts of doors, and near where the island began: perhaps it
+and on into new corridors and close no loop. On a submap, as after a kidnap, it looks for the rest of its map: it does
+not go back, but into one opening after the other, round the posts of doors, and near where the submap began: perhaps it
 was not carried at all, and then the rest lies there. Its input is map, sonars and odometry only.
 test_seeking.py::{test_it_goes_where_open_floor_was_seen, test_far_openings_are_sought_one_after_the_other,
 test_on_new_ground_for_long_it_goes_back, test_it_dares_twice_as_far_each_time_it_comes_back,
 test_with_nothing_new_it_goes_where_it_has_not_been_for_longest,
-test_in_a_small_map_every_trip_goes_into_an_opening, test_on_an_island_it_goes_into_every_opening,
-test_on_an_island_it_begins_where_that_began}.
+test_in_a_small_map_every_trip_goes_into_an_opening, test_on_a_submap_it_goes_into_every_opening,
+test_on_a_submap_it_begins_where_that_began}.
 """
 
 from __future__ import annotations
@@ -34,8 +34,8 @@ from ratslam_core import ExperienceMap, Odometry, Pose2
 TRIP_MOST_S = 150.0  # a trip is given up after this time
 SMALL_MAP_S = 60.0  # every trip goes into an opening while the robot can reach all that it knows within this time
 LONG_AGO_S = 120.0  # places visited more lately than this are not sought again
-SEARCH_SHARE = 0.1  # the rest of its map is looked for while another island is larger than this share of its own ...
-SEARCH_HOME = 2.0  # ... metres of the way there that a metre from where its island began to an opening counts as ...
+SEARCH_SHARE = 0.1  # the rest of its map is looked for while another submap is larger than this share of its own ...
+SEARCH_HOME = 2.0  # ... metres of the way there that a metre from where its submap began to an opening counts as ...
 SEARCH_BEAMS = 1  # ... and an opening is what so many beams have seen
 INTO_S, INTO_REACH_M = 25.0, 0.4  # driving into an opening ends after this time, or this near to its place ...
 INTO_FREE_M = 0.2  # ... or when less than this is free towards it
@@ -210,7 +210,7 @@ class Seeker:
             return None
         cost = times[rows]
         if _searching(experiences, p):
-            x, y = experiences.poses[np.argmax(experiences.island_of == experiences.island_of[experiences.active]), :2]
+            x, y = experiences.poses[np.argmax(experiences.submap_of == experiences.submap_of[experiences.active]), :2]
             cost = cost + SEARCH_HOME * np.hypot(places[:, 0] - x, places[:, 1] - y) / p.cruise_speed
         best = int(np.argmin(cost))
         return self._into(experiences, int(rows[best]), places[best])
@@ -229,11 +229,11 @@ class Seeker:
 
 
 def _searching(experiences: ExperienceMap, p: PilotParams) -> bool:
-    """Whether the robot looks for the rest of its map: another island, no smaller than `SEARCH_SHARE` of its own."""
+    """Whether the robot looks for the rest of its map: another submap, no smaller than `SEARCH_SHARE` of its own."""
     if not p.search:
         return False
-    sizes = np.bincount(experiences.island_of)
-    own = int(experiences.island_of[experiences.active])
+    sizes = np.bincount(experiences.submap_of)
+    own = int(experiences.submap_of[experiences.active])
     return bool(np.delete(sizes, own).max(initial=0) > SEARCH_SHARE * sizes[own])
 
 

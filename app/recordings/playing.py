@@ -110,9 +110,9 @@ class MomentReader:
 
 LEAST_SCALE, MOST_SCALE = 0.02, 50.0
 UNRELATED, UNRELATED_SCANS = 0.0025, 0.002  # share of unrelated views that may be taken for one another
-LOOK_SIGMA_M = 0.35  # of an observation that is only just believed, in the office
+OBSERVATION_SIGMA_M = 0.35  # of an observation that is only just believed, in the office
 LASER_SHIFT = 5  # columns of 3 degrees: a laser sees so well that a turn need not spoil a view
-LASER_GATE_RAD = 0.8  # scans laid on scans keep the heading: who turns the robot farther at once is a look-alike
+LASER_GATE_RAD = 0.8  # scans laid on scans keep the heading: what turns it farther at once is perceptual aliasing
 WIDTH_ERROR = 1.1  # the camera's width is measured to a tenth
 
 
@@ -147,7 +147,7 @@ def columns_of(turned_rad: float, columns: int, field_of_view: float) -> int:
     """[ours] How many whole columns of such a camera are no more than this angle, or a tenth above it at most.
 
     A column of a wide camera is many degrees: views under such turns are other views, and shifting them makes
-    look-alikes. test_playing.py::test_views_are_shifted_by_the_same_angle_whatever_the_camera.
+    perceptual aliasing. test_playing.py::test_views_are_shifted_by_the_same_angle_whatever_the_camera.
     `local_view.shift` of a config wins.
     """
     return int(WIDTH_ERROR * turned_rad * columns / field_of_view)
@@ -191,7 +191,7 @@ def _views(recording: Recording, seen: Survey, scale: float) -> dict[str, Value]
     threshold, own = float(np.quantile(seen.unlike, share)), FRONT_ENDS[_front_end(recording)].threshold
     values["local_view.match_threshold"] = threshold / own
     # Where most views are the same, as of a camera that stood still, the threshold is 0.
-    values["experience_map.anchor_sigma"] = min(LOOK_SIGMA_M * scale / threshold, 1.0) if threshold > 0 else 1.0
+    values["experience_map.anchor_sigma"] = min(OBSERVATION_SIGMA_M * scale / threshold, 1.0) if threshold > 0 else 1.0
     return values
 
 

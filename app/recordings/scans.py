@@ -8,7 +8,7 @@ A view says that a place is known; only the pose cells say where in it the robot
 A scan says it to centimetres. So a new experience is tied to old ones, and a look counts only where the scans agree: it is
 then as precise as they are. Each of the two scans must say the same when it is laid over the other. What a scan says
 wrongly all the same, the exact correction gives up like any other closure.
-test_scan_ties.py::{test_a_scan_ties_an_experience_to_an_old_one_where_it_belongs,test_a_look_alike_is_found_out_by_its_scan}.
+test_scan_ties.py::{test_a_scan_ties_an_experience_to_an_old_one_where_it_belongs,test_a_false_loop_closure_is_found_out_by_its_scan}.
 `ScanRules` has the plain twins. Points are in m, in the frame of the laser.
 """
 
@@ -328,15 +328,16 @@ class ScanTies:
             if tied == MOST:
                 return
 
-    def confirms(self, map_: ExperienceMap, experience: int, look: Pose2) -> tuple[Pose2, float] | None:
+    def verified(self, map_: ExperienceMap, experience: int, observation: Pose2) -> tuple[Pose2, float] | None:
         """Where the robot is in the frame of an experience, and give or take what (m); None if the scans do not agree.
 
-        look: what the view and the pose cells say.
+        observation: what the view and the pose cells say.
         """
         if not self._rules.confirmed or self._now is None or experience not in self._scans:
-            return look, math.inf
+            return observation, math.inf
         believed = map_.pose(experience).inverse().compose(map_.robot_here)
-        return self._laid(map_, experience, believed, LEAST_OFF_M) or self._laid(map_, experience, look, LEAST_OFF_M)
+        found = self._laid(map_, experience, believed, LEAST_OFF_M)
+        return found or self._laid(map_, experience, observation, LEAST_OFF_M)
 
     def _tie(self, map_: ExperienceMap, old: int, found: Pose2, sigma_m: float) -> None:
         map_.tie(old, map_.here, found, sigma_m)

@@ -210,7 +210,7 @@ def loops() -> None:
     config = Config()
     cells = config.pose_cells
     shape = cells.n_theta, cells.n_y, cells.n_x
-    believes = replace(config.experience_map, islands=False)  # else it would doubt that it is now here, now there
+    believes = replace(config.experience_map, submaps=False)  # else it would doubt that it is now here, now there
     made = ExperienceMap(shape, cells.cell_m, believes, ground=FamiliarGround())
     for k in range(600):
         view, known = k // 10 % 20, k >= 200
@@ -230,7 +230,7 @@ def loops() -> None:
     made.declare_kidnapped()
     for _ in range(3):
         made.evidence.move(Odometry(0.3, 0.1, 0.1))
-        made.evidence.observe(made, seen_by, made.islands.current)
+        made.evidence.observe(made, seen_by, made.submaps.current)
     ratslam_core.extensions.evidence.nats(0.5, 0)
     local = LocalMovement(_ANGLES, config.pilot.echo_s)
     RouteFollower(0, Bars()).step(made, local, 0.1, config.pilot)

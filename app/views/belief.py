@@ -27,10 +27,10 @@ def belief_of(session: Session) -> Belief:
         off_m=math.inf if map_.carried else map_.off_m,
         others=other_places(map_),
         corrected=map_.corrected,
-        apart=int(np.count_nonzero(map_.island_of != map_.islands.current)),
-        joined=map_.islands.joined,
-        spared=map_.ground.spared,
-        links_spared=map_.ground.links_spared,
+        apart=int(np.count_nonzero(map_.submap_of != map_.submaps.current)),
+        joined=map_.submaps.merged,
+        spared=map_.ground.pruned,
+        links_spared=map_.ground.links_pruned,
         forgotten=brain.view_links.forgotten,
         odds=None if map_.belief is None else math.exp(min(map_.belief.log_odds, MOST_LOG_ODDS)),
         places=len(possible_places(map_)),
@@ -66,7 +66,7 @@ def other_places(map_: ExperienceMap) -> tuple[Hypothesis, ...]:
 
 def state_of(map_: ExperienceMap, place: Pose2, submap: int) -> tuple[float, float, float] | None:
     """The state of the pose cells of the submap's nearest experience, moved by as much as the place is beside it."""
-    own = np.flatnonzero(map_.island_of == submap)
+    own = np.flatnonzero(map_.submap_of == submap)
     apart = np.hypot(map_.poses[own, 0] - place.x, map_.poses[own, 1] - place.y)
     if not len(own) or apart.min() > HELD_M:
         return None

@@ -202,7 +202,7 @@ class EventWatch:
     def _watch_belief(self, carried: bool) -> None:
         """Marks that a hypothesis is accepted again after a kidnap, and that the submaps are merged."""
         session, map_ = self._session, self._session.brain.experience_map
-        belief, joined = map_.belief, map_.islands.joined
+        belief, joined = map_.belief, map_.submaps.merged
         if carried and self._lost_s is None:
             self._lost_s, self._believed, self._joined = session.time_s, False, joined
         if self._lost_s is None:

@@ -20,9 +20,9 @@ class CellsOnly(ExperienceMap):
 
     def step(
         self, packet: Packet, seen: Recognition, odometry: Odometry, behaviour: int = 0, *,
-        beats: int = 1, views: object = None, witness: object = None,
+        beats: int = 1, views: object = None, verification: object = None,
     ) -> bool:  # fmt: skip
-        del odometry, behaviour, beats, views, witness  # only the packet counts
+        del odometry, behaviour, beats, views, verification  # only the packet counts
         if self.here < 0:
             self._create(packet, seen.view, IDENTITY)
             return True

@@ -22,11 +22,11 @@ from ratslam_core.experience_map.temporal_map import TemporalMap
 from ratslam_core.extensions.evidence import PRIOR, Belief, Evidence
 from ratslam_core.extensions.exact_solver import ExactSolver
 from ratslam_core.extensions.familiar_ground import FamiliarGround, NewGround
-from ratslam_core.extensions.islands import Islands, Merge
-from ratslam_core.extensions.odometry_edges import NoOdometryEdges, OdometryEdges, open_way_m, soften
+from ratslam_core.extensions.odometry_edges import NoOdometryEdges, OdometryEdges, inflate_covariance, open_way_m
 from ratslam_core.extensions.pose_filter import SNAP, PoseFilter
+from ratslam_core.extensions.submaps import Merge, Submaps
 from ratslam_core.params import EvidenceParams, ExperienceMapParams
-from ratslam_core.parts import LocalViewPart, Optimiser, Witness
+from ratslam_core.parts import GeometricVerification, LocalViewPart, Optimiser
 from ratslam_core.pose_graph.pose_graph import PoseGraph
 from ratslam_core.pose_graph.relaxation import has_diverged
 from ratslam_core.pose_graph.transitions import PreintegratedOdometry, moved_by, require_behaviour
@@ -34,17 +34,17 @@ from ratslam_core.types import IDENTITY, Odometry, Packet, Pose2, Recognition, r
 
 CARRIED = 400.0  # cells: how far off the robot may be after it was carried
 BLIND = 4.0  # cells: when there is nothing to see, only experiences this near in the map can become active,
-BLIND_LEVELS = 10.0  # and such a look is as uncertain as one that differs by so much
+BLIND_LEVELS = 10.0  # and such an observation is as uncertain as one that differs by so much
 
 
 class Senses(NamedTuple):
-    """What can be asked of a sight, beside which view it is."""
+    """What can be asked of an observation, beside which view it is."""
 
     views: LocalViewPart | None = None  # which made it out
-    witness: Witness | None = None  # a look that it does not confirm is none
+    verification: GeometricVerification | None = None  # drops the observations that it does not confirm
 
 
-@kind("experience map/7")
+@kind("experience map/8")
 class ExperienceMap(PoseGraph):
     """Experiences, links and a robot among them. `step` finds or makes the active experience and learns the transition to it."""
 
@@ -64,7 +64,7 @@ class ExperienceMap(PoseGraph):
         self.transitions.reuses = isinstance(self.ground, FamiliarGround)
         self.evidence = Evidence(evidence or EvidenceParams(), cell_m)
         self.pose_filter = PoseFilter(cell_m)
-        self.islands = Islands()
+        self.submaps = Submaps()
         self._temporal_map = TemporalMap(self)
         self._edges = OdometryEdges() if self.params.odometry_edges else NoOdometryEdges()
         self.here = -1  # the experience at which the map is being learnt
@@ -72,8 +72,8 @@ class ExperienceMap(PoseGraph):
         self.corrected = (
             0  # how often evidence proved it elsewhere: carried unnoticed, slipped, or merged where it was not
         )
-        self.agrees = True  # whether the last look agreed with where the robot believed itself to be
-        self._offset = IDENTITY  # the robot in the frame of the active experience, at the best look so far
+        self.agrees = True  # whether the last observation agreed with where the robot believed itself to be
+        self._offset = IDENTITY  # the robot in the frame of the active experience, at the best observation so far
         self._sigma = 0.0  # how far off that may be, m
         self._travel = IDENTITY  # odometry since then
         self._kidnapped = False  # since the active experience was entered: the way from there is no transition
@@ -82,13 +82,14 @@ class ExperienceMap(PoseGraph):
 
     def step(
         self, packet: Packet, seen: Recognition, odometry: Odometry, behaviour: int = 0, *,
-        beats: int = 1, views: LocalViewPart | None = None, witness: Witness | None = None,
+        beats: int = 1, views: LocalViewPart | None = None, verification: GeometricVerification | None = None,
     ) -> bool:  # fmt: skip
         """One step: the robot moved as the odometry says, to this packet and this view. True when a new experience was made.
 
         behaviour: 0 to 15, the local movement that led here; links remember it. beats: how often it moved so, and for how
-        many sights this one counts. views: can be asked for more about what is seen. witness: a look that it does not
-        confirm is none. ValueError for another number, and for a packet whose place or heading is not finite.
+        many observations this one counts. views: can be asked for more about what is seen. verification: drops the
+        observations that it does not confirm. ValueError for another number, and for a packet whose place or heading is
+        not finite.
         """
         require_behaviour(behaviour)
         for name in ("x", "y", "heading_rad"):
@@ -100,12 +101,12 @@ class ExperienceMap(PoseGraph):
         for _ in range(beats):
             self._move(odometry)
         if self.evidence.known and views is not None and seen.view >= 0:
-            self.evidence.observe(self, views, self.islands.current)
+            self.evidence.observe(self, views, self.submaps.current)
         if seen.recruited:
             self.forget_view(seen.view)
         before = self._departure()
-        best, look, seen = self._choose(packet, seen, Senses(views, witness))
-        if best < 0 and self.ground.spare():
+        best, observation, seen = self._choose(packet, seen, Senses(views, verification))
+        if best < 0 and self.ground.prune():
             return False
         if best < 0:
             self._create(packet, seen.view, self.robot_here)
@@ -113,7 +114,7 @@ class ExperienceMap(PoseGraph):
             self._edges.made(self.here, driven, self.transitions, self._weight_of_way)
             return True
         if best != before.experience:
-            self._enter(best, *(look or (self._look_by_view(best, seen), self._deviation(seen))))
+            self._enter(best, *(observation or (self._observation_by_view(best, seen), self._deviation(seen))))
             self._learn_link(before, behaviour)
         elif self._arrival is not None and self._deviation(seen) < self._sigma:
             self._see_better(seen)
@@ -144,7 +145,7 @@ class ExperienceMap(PoseGraph):
         return any(deleted)
 
     def tie(self, i: int, j: int, moved: Pose2, sigma_m: float) -> None:
-        """[ours] Something besides views measured where j lies in the frame of i, give or take `sigma_m`: a closure, no way.
+        """[ours] Something besides views measured where j lies in the frame of i, give or take `sigma_m`: a loop closure, no way.
 
         A laser does that (`app/recordings/scans.py`); nobody else does.
         test_scan_ties.py::test_a_scan_ties_an_experience_to_an_old_one_where_it_belongs.
@@ -166,11 +167,11 @@ class ExperienceMap(PoseGraph):
         self.pose_filter.forget(CARRIED * self.cell_m)
         self._edges.forget()
         self.ground.forget()
-        if self.params.islands:
-            island, robot = self.islands.current, self.robot_here
+        if self.params.submaps:
+            submap, robot = self.submaps.current, self.robot_here
             sure |= self.carried and self.evidence.sure
-            self.islands.begin()
-            self.evidence.begin(robot, island, len(self), sure=sure)
+            self.submaps.begin()
+            self.evidence.begin(robot, submap, len(self), sure=sure)
         self.carried = True
 
     def declare_found(self) -> None:
@@ -236,7 +237,7 @@ class ExperienceMap(PoseGraph):
         self._travel = self._travel.compose(moved)
         self._leg.add(moved, odometry)
         self.evidence.move(odometry)
-        self.islands.move(way_m / self.cell_m, self.evidence.params.unnoticed)
+        self.submaps.move(way_m / self.cell_m, self.evidence.params.unnoticed)
         self._edges.move(moved, odometry)
         self._driven_m += way_m
         self._driving_s += odometry.dt * (odometry.speed != 0)
@@ -247,23 +248,23 @@ class ExperienceMap(PoseGraph):
     def _choose(
         self, packet: Packet, seen: Recognition, by: Senses
     ) -> tuple[int, tuple[Pose2, float] | None, Recognition]:
-        """The experience that the robot is at, -1 for none; the look at it and how far off that may be, if it is another
-        than before and was seen; and as what it is seen.
+        """The experience that the robot is at, -1 for none; the observation and how far off that may be, if it is another than
+        before and was seen; and as what it is seen.
         """
         # On familiar ground there is something to see, so the experiences of nothing do not count.
         best, seen = (-1, seen) if seen.familiar else self._seen_experience(packet, seen, by)
         by_place = self.ground.of_view(self, seen.view) if best < 0 else -1
-        look = None
+        observation = None
         if best >= 0 and best != self.here:
-            look = self._measured(best, packet, seen, by.witness)
-            best = -1 if look is None else best
-        return max(best, by_place), look, seen
+            observation = self._measured(best, packet, seen, by.verification)
+            best = -1 if observation is None else best
+        return max(best, by_place), observation, seen
 
     def log_prior(self, experience: int, pose: Pose2) -> float:
         """Log odds of a place, before anything speaks for it: how far odometry may have led astray since the robot was there,
         or how sure it was not carried unnoticed, or merged where it was not.
         """
-        if not self.evidence.in_doubt or self.island_of[experience] != self.islands.current:
+        if not self.evidence.in_doubt or self.submap_of[experience] != self.submaps.current:
             return PRIOR
         return -min(self._against_drift(experience, pose), self._against_error(experience))
 
@@ -277,7 +278,7 @@ class ExperienceMap(PoseGraph):
 
     def _merge_before(self, experience: int) -> Merge | None:
         """The merge that put the robot where it is on the map that this experience was of before; None if it cannot be undone."""
-        merge = self.islands.merge
+        merge = self.submaps.last_merge
         return merge if merge is not None and experience < merge.first else None
 
     def _off(self, pose: Pose2) -> float:
@@ -286,54 +287,54 @@ class ExperienceMap(PoseGraph):
     def _seen_experience(self, packet: Packet, seen: Recognition, by: Senses) -> tuple[int, Recognition]:
         """The experience that the robot sees, the most energetic of those that it can see, -1 for none; and as what.
 
-        [ours] One where it cannot be puts it in doubt. When evidence has won, it is one beyond reach, perhaps on another
-        submap, and the two were merged.
+        [ours] One outside the validation gate puts it in doubt. When evidence has won, it is one beyond the gate, perhaps on
+        another submap, and the two were merged.
         """
-        if not self.params.islands:
+        if not self.params.submaps:
             return self._most_energetic(packet, seen.view, math.inf), seen
         if self.evidence.known and (merged := self._merged(by)) is not None:
             return merged
         if self.evidence.idle:
             self._end_of_doubt()
-        reach = self._reach_m
-        best = self._most_energetic(packet, seen.view, reach)
-        if seen.view < 0 or not self.params.match_view or math.isinf(reach):
+        gate = self._gate_m
+        best = self._most_energetic(packet, seen.view, gate)
+        if seen.view < 0 or not self.params.match_view or math.isinf(gate):
             return best, seen
         turns = best >= 0 and self._turns(best, packet, seen)
-        if not turns and (best >= 0 or self._may_be_seen_from(seen.view, reach)):
+        if not turns and (best >= 0 or self._may_be_seen_from(seen.view, gate)):
             return best, seen
         if not self.carried:
             self.evidence.doubt(len(self))
         return -1, seen
 
     @property
-    def _reach_m(self) -> float:
-        """A look may move the robot by so much: that odometry led it farther astray is less likely than that it was carried."""
+    def _gate_m(self) -> float:
+        """The validation gate: that odometry led the robot farther astray is less likely than that it was carried."""
         return max(SNAP * self.cell_m, math.sqrt(2 * self.evidence.params.unnoticed) * self.pose_filter.sigma_m)
 
     def _turns(self, experience: int, packet: Packet, seen: Recognition) -> bool:
-        """[ours] Whether a look would turn the robot farther than its heading can be off, wherever it puts it.
+        """[ours] The same gate for the heading: whether an observation would turn the robot farther than that can be off.
 
-        test_evidence.py::test_a_look_that_turns_the_robot_is_held_back.
+        test_evidence.py::test_an_observation_that_turns_the_robot_is_outside_the_validation_gate.
         """
         most = self.evidence.params.gate_rad
         if most >= math.pi or self.carried:
             return False
-        claimed = self.pose(experience).compose(self._look(experience, packet, seen))
+        claimed = self.pose(experience).compose(self._observation(experience, packet, seen))
         return abs(wrap_angle(claimed.heading_rad - self.robot_here.heading_rad)) > most
 
-    def _may_be_seen_from(self, view: int, reach_m: float) -> bool:
-        """Whether an experience of this view lies within reach, wherever the packet is; or there is none at all."""
+    def _may_be_seen_from(self, view: int, gate_m: float) -> bool:
+        """Whether an experience of this view lies within the gate, wherever the packet is; or there is none at all."""
         found = self._experiences.of_view(view)
-        own = found[self.island_of[found] == self.islands.current]
-        return not len(own) or bool(self._away(own, self.robot_here).min() <= reach_m)
+        own = found[self.submap_of[found] == self.submaps.current]
+        return not len(own) or bool(self._away(own, self.robot_here).min() <= gate_m)
 
     def _away(self, which: NDArray[np.int64], pose: Pose2) -> NDArray[np.float64]:
         return np.hypot(self.poses[which, 0] - pose.x, self.poses[which, 1] - pose.y)
 
-    def _most_energetic(self, packet: Packet, view: int, reach_m: float) -> int:
+    def _most_energetic(self, packet: Packet, view: int, gate_m: float) -> int:
         return self._experiences.most_energetic(
-            packet, view, self.params, self.robot_here, BLIND * self.cell_m, reach_m, self.islands.current
+            packet, view, self.params, self.robot_here, BLIND * self.cell_m, gate_m, self.submaps.current
         )
 
     def _merged(self, by: Senses) -> tuple[int, Recognition] | None:
@@ -343,14 +344,14 @@ class ExperienceMap(PoseGraph):
         belief = self.evidence.belief
         if belief is None or belief.log_odds < self.evidence.params.merge or by.views is None:
             return None
-        look = self.pose(belief.experience).inverse().compose(belief.pose)
-        if by.witness is not None and by.witness.confirms(self, belief.experience, look) is None:
+        observation = self.pose(belief.experience).inverse().compose(belief.pose)
+        if by.verification is not None and by.verification.verified(self, belief.experience, observation) is None:
             return None
-        view, other = int(self.views[belief.experience]), int(self.island_of[belief.experience])
-        if other != self.islands.current:
-            own = self.carried and other < self.islands.current
-            self.islands.join(other, self.island_of, self.poses, self.robot_here, belief.pose)
-            self.islands.merge = Merge(self.evidence.known, belief.log_odds) if own else None
+        view, other = int(self.views[belief.experience]), int(self.submap_of[belief.experience])
+        if other != self.submaps.current:
+            own = self.carried and other < self.submaps.current
+            self.submaps.merge(other, self.submap_of, self.poses, self.robot_here, belief.pose)
+            self.submaps.last_merge = Merge(self.evidence.known, belief.log_odds) if own else None
         elif self._against_drift(belief.experience, belief.pose) >= self._against_error(belief.experience):
             self._correct_error(belief)
         self._end_of_doubt()
@@ -362,28 +363,30 @@ class ExperienceMap(PoseGraph):
         self.corrected += 1
         merge = self._merge_before(belief.experience)
         if merge is not None and self.here >= merge.first:
-            self.islands.undo(self.transitions, self.poses, self.robot_here, belief.pose)
+            self.submaps.undo(self.transitions, self.poses, self.robot_here, belief.pose)
             merge.log_odds, self._arrival = belief.log_odds, None
         else:
             off, sigma = self._off(belief.pose), self.step_sigma_m
-            soften(self.transitions, belief.experience, self.evidence.known, off, sigma)
+            inflate_covariance(self.transitions, belief.experience, self.evidence.known, off, sigma)
 
     def _end_of_doubt(self) -> None:
-        self.evidence.end(len(self) if np.any(self.island_of != self.islands.current) else 0)
+        self.evidence.end(len(self) if np.any(self.submap_of != self.submaps.current) else 0)
 
     def _measured(
-        self, experience: int, packet: Packet, seen: Recognition, witness: Witness | None
+        self, experience: int, packet: Packet, seen: Recognition, verification: GeometricVerification | None
     ) -> tuple[Pose2, float] | None:
-        """[ours] The look, and how far off it may be (m); as a witness measures it, None if it does not confirm it.
+        """[ours] The observation and how far off it may be (m); as geometric verification measures it, None if it fails.
 
-        test_scan_ties.py::test_the_map_asks_the_witness.
+        test_scan_ties.py::test_the_map_asks_for_geometric_verification.
         """
-        look, sigma = self._look(experience, packet, seen), self._deviation(seen)
-        confirmed = (look, math.inf) if witness is None else witness.confirms(self, experience, look)
-        return (look, sigma) if confirmed is not None and math.isinf(confirmed[1]) else confirmed
+        observation, sigma = self._observation(experience, packet, seen), self._deviation(seen)
+        if verification is None:
+            return observation, sigma
+        verified = verification.verified(self, experience, observation)
+        return (observation, sigma) if verified is not None and math.isinf(verified[1]) else verified
 
-    def _look(self, experience: int, packet: Packet, seen: Recognition) -> Pose2:
-        """The look: the robot's pose in the frame of an experience, whose zone it may enter beside the centre."""
+    def _observation(self, experience: int, packet: Packet, seen: Recognition) -> Pose2:
+        """The robot's pose in the frame of an experience, whose zone it may enter beside the centre."""
         if not self.params.zone_offset:
             return IDENTITY
         if self.energy(experience, packet, seen.view) <= self.params.threshold:  # recognised by its view alone
@@ -401,8 +404,8 @@ class ExperienceMap(PoseGraph):
         """How far (m) the robot may be from where the view was taken: the more the view differs, the farther."""
         return self.params.anchor_sigma * (seen.difference if seen.view >= 0 else BLIND_LEVELS)
 
-    def _look_by_view(self, experience: int, seen: Recognition) -> Pose2:
-        """[ours] The look without the pose cells: the robot is where the view was taken. See `FamiliarGround.of_view`."""
+    def _observation_by_view(self, experience: int, seen: Recognition) -> Pose2:
+        """[ours] The same without the pose cells: the robot is where the view was taken. See `FamiliarGround.of_view`."""
         turn = seen.facing_rad
         if turn is None:
             turn = self.pose(experience).inverse().compose(self.robot_here).heading_rad
@@ -414,24 +417,24 @@ class ExperienceMap(PoseGraph):
         return _Departure(self.here, self._offset.compose(self._travel), self._sigma, self._kidnapped)
 
     def _create(self, packet: Packet, view: int, pose: Pose2) -> None:
-        self.here = self._experiences.add(packet, view, pose, self.islands.current)
+        self.here = self._experiences.add(packet, view, pose, self.submaps.current)
         self.transitions.graph.add_node()
-        landed = self._kidnapped and self.params.islands  # on an island of its own the robot knows where it is
+        landed = self._kidnapped and self.params.submaps  # on a submap of its own the robot knows where it is
         self.pose_filter.make(sure=landed)
         self._offset, self._travel, self._sigma, self._kidnapped = IDENTITY, IDENTITY, 0.0, False
 
-    def _enter(self, experience: int, look: Pose2, sigma: float) -> None:
+    def _enter(self, experience: int, observation: Pose2, sigma: float) -> None:
         """Make a known experience active."""
-        self._edges.look()
+        self._edges.observe()
         self.pose_filter.local = self.pose(experience).inverse().compose(self.robot_here)
-        self._offset, self._travel, self._sigma, self._kidnapped = look, IDENTITY, sigma, False
+        self._offset, self._travel, self._sigma, self._kidnapped = observation, IDENTITY, sigma, False
         self.here = experience
-        self.agrees = self.pose_filter.see(look, sigma)
+        self.agrees = self.pose_filter.see(observation, sigma)
 
     def _see_better(self, seen: Recognition) -> None:
         """[ours] The robot is nearer than before to where the active experience was made: measure the transition again.
 
-        test_experience_map_transitions.py::test_the_best_look_decides_the_transition.
+        test_experience_map_transitions.py::test_the_best_observation_decides_the_transition.
         """
         arrival = self._arrival
         assert arrival is not None
@@ -459,7 +462,7 @@ class ExperienceMap(PoseGraph):
         sigma = math.hypot(before.sigma, self.params.odometry_drift * leg.way_m)
         arrival = _Arrival(row, t.move[row].copy(), float(t.weight[row]), before.came, sigma)
         backbone = self.params.odometry_edges and bool(t.chain[row]) and t.passages[row] > 1
-        self._arrival = arrival if self.params.best_look and not backbone else None
+        self._arrival = arrival if self.params.best_observation and not backbone else None
         if not backbone:
             self._measure(arrival)
         if not before.kidnapped:
@@ -481,7 +484,8 @@ class ExperienceMap(PoseGraph):
         return self._weight_of(self.params.odometry_drift * way_m)
 
     def _weight_of(self, sigma: float) -> float:
-        """[ours] The weight of a transition in map correction: 1 for odometry over one step, less when its ends are less certain.
+        """[ours] The weight of a transition in map correction, its inverse covariance: 1 for odometry over one step, less when
+        its ends are less certain.
 
         With anchor_sigma and odometry_drift 0 every transition has the same weight, as in the papers.
         """
@@ -507,10 +511,10 @@ class _Departure:
 @kind("arrival/1")
 @dataclass(slots=True)
 class _Arrival:
-    """The transition that led to the active experience, kept as long as a better look may measure it again."""
+    """The transition that led to the active experience, kept as long as a better observation may measure it again."""
 
     row: int
     move: NDArray[np.float64]  # of the row before this passage
     weight: float  # of the row before this passage
-    came: Pose2  # the robot in the frame of the experience before, at the best look at the active one
+    came: Pose2  # the robot in the frame of the experience before, at the best observation of the active one
     sigma: float

@@ -7,10 +7,11 @@ observation is there than at a wrong place that looked right a metre before: `RI
 unit of evidence; and since wrong places can stay alike for longer, a unit takes a share of what was gathered away.
 Beside all hypotheses stands that of a new place, for and against which nothing speaks.
 
-A robot that noticed that it was carried may be anywhere. One that sees something where it cannot be is in doubt: *here*,
-where odometry has led it, is a rival, too, weighed by what is seen there; what lies farther off than odometry can have
-drifted begins with odds against it, at most those of having been carried unnoticed; and since an exact copy of a place
-may exist, looks say no more than MOST_SAID. So in a twin odometry decides, where looks cannot.
+A robot that noticed that it was carried may be anywhere. One whose observation lies outside the validation gate is in
+doubt: *here*, where odometry has led it, is a rival, too, weighed by what is seen there; what lies farther off than
+odometry can have drifted begins with odds against it, at most those of having been carried unnoticed; and since an exact
+copy of a place may exist, observations say no more than MOST_SAID. So in a twin odometry decides, where observations
+cannot.
 
 The robot *believes* a hypothesis that is likelier than all others together. There it acts; nothing is learnt from it, so
 that it may be wrong at no cost. Where the odds are 1000 to 1, the submap on which it was is *merged*. test_evidence.py.
@@ -37,7 +38,7 @@ MOST = 32  # hypotheses
 UNIT, UNIT_RAD = 4.0, 1.0  # cells; so long a way, or so wide a turn, is one unit of evidence
 LEAK = 0.2  # share of the evidence for a hypothesis that a unit takes away
 LEAST_SEEN = 1.5  # units that a hypothesis needs to be believed
-MOST_SAID = 14.0  # nats that looks can say for a place, since an exact copy of it may exist
+MOST_SAID = 14.0  # nats that observations can say for a place, since an exact copy of it may exist
 LEAST_VIEWS = 10  # of fewer views nobody can say how like views are anyway
 MOST_VIEWS = 2048  # that are compared with an observation; of more, every second, third ... one
 MOST_PAIRS = 4096  # of a hypothesis and a view near it
@@ -48,7 +49,7 @@ FORGOTTEN = PRIOR - 4.0  # log odds below which a hypothesis is given up
 DOUBTED = 15.0  # and, while in doubt, how far they may lie below the likeliest's
 QUIET = 5.0  # units of way after which a doubt is over for which nothing has spoken
 HERE, HERE_RAD = 4.0, 0.6  # cells; a hypothesis so near to where a robot in doubt is mapping, is that it is there
-BELIEVE_IN_DOUBT = 3.0  # nats: who was hardly carried must not wander off in thought for a look-alike
+BELIEVE_IN_DOUBT = 3.0  # nats: who was hardly carried must not wander off in thought for perceptual aliasing
 SAME, SAME_RAD = 2.4, 0.3  # cells; hypotheses this near are one
 PULLS, PULLS_RAD = 2.8, 0.35  # cells; a view this near to a hypothesis says more exactly where it is
 PULL = 0.3  # the share of that way which it goes for a unit of evidence
@@ -87,7 +88,7 @@ class Map(Protocol):
     @property
     def views(self) -> Whole: ...
     @property
-    def island_of(self) -> NDArray[np.int32]: ...
+    def submap_of(self) -> NDArray[np.int32]: ...
     @property
     def robot_here(self) -> Pose2: ...
     def log_prior(self, experience: int, pose: Pose2, /) -> float: ...
@@ -174,7 +175,7 @@ class Evidence:
         usual = max(float(np.partition(apart, len(apart) // 10)[len(apart) // 10]), 1e-9)
         possible = np.arange(len(map_.views)) < self.known
         if not self.in_doubt:
-            possible &= map_.island_of != submap
+            possible &= map_.submap_of != submap
         known = np.where(possible, map_.views, -1)[: self.known]
         units, self._units = self._units, 0.0
         self._weigh(map_, views, known, usual, units, submap)
@@ -201,7 +202,7 @@ class Evidence:
         """The best views say more exactly where old hypotheses are, or begin new ones."""
         places = map_.poses[experiences].copy()
         places[:, 2] += facing
-        submaps = map_.island_of[experiences].astype(np.float64)
+        submaps = map_.submap_of[experiences].astype(np.float64)
         known = _pull(self.hypotheses, places, submaps, units, self.cell_m)
         for k in np.flatnonzero(~known):
             prior = map_.log_prior(int(experiences[k]), Pose2(*places[k].tolist()))
@@ -256,7 +257,7 @@ class _Expected:
 
     def __init__(self, map_: Map, views: Views, known: Whole, rows: Rows) -> None:
         column = views.column_rad
-        self.ring, pairs = _near(rows, map_.poses, map_.island_of, known, column, map_.cell_m)
+        self.ring, pairs = _near(rows, map_.poses, map_.submap_of, known, column, map_.cell_m)
         owner, which, shift = pairs.T
         apart, by = views.apart_at(known[which], shift, 2)
         self.apart, self.experience, by = _least(len(rows), owner, which, apart, by)

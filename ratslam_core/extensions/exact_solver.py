@@ -1,16 +1,16 @@
-"""[ours] The fixed point of the sweeps, computed directly from time to time while loops close; and robust closures.
+"""[ours] The fixed point of the sweeps, computed directly from time to time while loops close, without outliers.
 
 Sweeps alone lag behind a growing map. A larger map is solved less often, so that a step costs the same on average.
-Links that the map contradicts weigh less (`robust`). A disagreement that no map can explain, but a bias of the yaw rate
-can, is learnt as that bias (`calibrate`). test_relaxation_sweep.py::test_sweeps_and_solution_agree,
+Links that the map contradicts, outliers, weigh less (`robust`). A disagreement that no map can explain, but a bias of the
+yaw rate can, is learnt as that bias (`calibrate`). test_relaxation_sweep.py::test_sweeps_and_solution_agree,
 test_experience_map_correction.py::{test_a_correction_that_was_hard_is_followed_by_a_long_rest,
 test_a_very_large_map_is_swept_in_some_beats_only}. `relaxation.Relaxation` is the
 plain twin: sweeps and nothing else.
 
-[ours] Closures that no map can bring together with the others are given up, by graduated non-convexity. Odometry between
-experiences made one after the other is sure; every other row rests on a look and may be false. At first all of them
+[ours] Loop closures that no map can bring together with the others are given up, by graduated non-convexity. Odometry between
+experiences made one after the other is sure; every other row rests on an observation and may be false. At first all of them
 count. Then, round by round, those that the map contradicts count less, in the beginning gently, in the end wholly or not
-at all (truncated least squares). So many false closures are found out together; and since each solution asks all of them
+at all (truncated least squares). So many false loop closures are found out together; and since each solution asks all of them
 anew, one that was believed for a while is let go when others contradict it, and one that was given up counts again when
 they agree. Yang, Antonante, Tzoumas and Carlone, RA-L 2020, eqs. 12-14.
 test_graduated_trust.py::test_false_closures_are_found_out. With `experience_map.robust` off nothing is given up.
@@ -27,7 +27,7 @@ from ratslam_core.pose_graph.pose_graph import STEP_SIGMA, TURN_CELLS, PoseGraph
 
 MOST_SWEPT = 8000  # experiences a beat, on average: a larger map is swept in every second beat, or third ...
 WORK_A_STEP = 1e5  # of exact corrections, on average over the beats; so much takes about half a millisecond
-TRIAL = 36.0  # sigma squared; all closures are put on trial when the map leaves one of them farther off
+TRIAL = 36.0  # sigma squared; all loop closures are put on trial when the map leaves one of them farther off
 
 
 @kind("exact solver/2")
@@ -54,7 +54,7 @@ class ExactSolver:
         given_up = self._given_up(graph)
         learnt, work = self._settle(graph, None)
         if graph.params.robust and self._contradicted(graph, given_up):
-            graph.poses[:] = before  # many false closures would have led it far astray, and the bias, too
+            graph.poses[:] = before  # many false loop closures would have led it far astray, and the bias, too
             self._learn(graph, -learnt)
             share, trying = kept(*_given(graph), self._odometry(graph), graph.cell_m)
             work += trying + self._settle(graph, share)[1]
@@ -67,8 +67,8 @@ class ExactSolver:
         One that was given up and is still far off is no news. test_graduated_trust.py::test_a_lie_is_tried_once.
         """
         t = graph.transitions
-        looks = np.flatnonzero(~self._odometry(graph) & (t.weight[: t.count] > 0.0))
-        off, old = contradiction(*_given(graph), looks, graph.cell_m), given_up[looks]
+        observations = np.flatnonzero(~self._odometry(graph) & (t.weight[: t.count] > 0.0))
+        off, old = contradiction(*_given(graph), observations, graph.cell_m), given_up[observations]
         far = off > TRIAL / BAR
         return bool(np.any(far & ~old) or np.any((off < 1.0) & old))
 
@@ -118,7 +118,7 @@ def _given(
 
 
 ODOMETRY_GIVES = 5.0  # sigma of disagreement at which odometry counts half
-LOOK_GIVES = 1.0  # from so many on a look pulls no harder
+HUBER = 1.0  # sigma of disagreement from which on an observation pulls no harder
 
 
 def trust(
@@ -132,20 +132,20 @@ def trust(
     """[ours] How far each link is believed, 0 to 1, given how well the map fits it.
 
     weights: STEP_SIGMA^2 / variance; cell_m: side of a cell of the pose cells; chain: rows of odometry, the others are
-    looks. The pull of a look stops growing with its error (Huber). Odometry cannot be far off, so its pull even falls
-    (Cauchy). Many looks that agree thus tear the one link along which the robot was carried, and a single look does not.
-    test_relaxation_trust.py::test_many_looks_tear_the_link_of_a_kidnap.
+    observations. The pull of an observation stops growing with its error (Huber). Odometry cannot be far off, so its pull
+    even falls (Cauchy). Many observations that agree thus break the one link along which the robot was carried, and a single
+    one does not.
+    test_relaxation_trust.py::test_many_observations_break_the_link_of_a_kidnap.
     """
     ex, ey, turn = disagreement(poses, links, moves).T
     rad_per_m, sigma_m = TURN_CELLS / cell_m, STEP_SIGMA * cell_m
     chi: NDArray[np.float64] = np.sqrt(weights * (ex**2 + ey**2 + (turn / rad_per_m) ** 2)) / sigma_m
-    return np.where(
-        chain, 1 / (1 + (chi / ODOMETRY_GIVES) ** 2), np.minimum(1, LOOK_GIVES / np.maximum(chi, LOOK_GIVES))
-    )
+    odometry, observation = 1 / (1 + (chi / ODOMETRY_GIVES) ** 2), np.minimum(1, HUBER / np.maximum(chi, HUBER))
+    return np.where(chain, odometry, observation)
 
 
-SIGMA = 0.6  # cells: least error that a closure is taken to have
-BAR = 9.0  # sigma squared; a closure that is farther off is given up
+SIGMA = 0.6  # cells: least error that a loop closure is taken to have
+BAR = 9.0  # sigma squared; a loop closure that is farther off is an outlier, and given up
 GROWTH = 1.4  # how much more strictly each round judges than the one before
 MOST_ROUNDS = 100
 DECIDED = 0.01  # a share this near to 0 or 1 no longer changes

@@ -1,8 +1,8 @@
-"""[ours] Ground that is recognised often enough gets no more views and experiences.
+"""[ours] Map density and pruning: ground that is recognised often enough gets no more views and experiences.
 
-The papers' robot recruits a view for each sight that is unlike all others, and an experience for each view at a new
+The papers' robot recruits a view for each observation that is unlike all others, and an experience for each view at a new
 state of the pose cells, so its memory grows for as long as it drives, even in an office that never changes. Here each
-experience knows which share of the latest sights near it were recognised. Where the shares of the experiences near the
+experience knows which share of the latest observations near it were recognised. Where the shares of the experiences near the
 robot add up to ENOUGH, one more would tell it nothing, and what it sees is let go: it goes on by odometry until it
 recognises something again, never for long. Where a place changes, nothing is recognised any more, the shares fall, and
 the new appearance is learnt. A robot that is not sure of its place learns as in the papers.
@@ -20,13 +20,13 @@ from numpy.typing import NDArray
 
 from disk import kind
 from ratslam_core.beats import weight
-from ratslam_core.extensions.islands import Islands
 from ratslam_core.extensions.pose_filter import PoseFilter
+from ratslam_core.extensions.submaps import Submaps
 from ratslam_core.pose_graph.transitions import Transitions
 from ratslam_core.types import Odometry, Pose2, Recognition
 
-ENOUGH = 0.5  # a place is familiar when the shares of recognised sights of the experiences there add up to this
-SIGHTS = 20  # over which that share is averaged
+ENOUGH = 0.5  # a place is familiar when the shares of recognised observations of the experiences there add up to this
+OBSERVATIONS = 20  # over which that share is averaged
 NEAR = 1.6  # cells; experiences this near are of one place
 NEAR_RAD = math.radians(17)  # if their headings differ by no more
 SURE = 1.2  # cells: only a robot whose place is known to this precision calls it familiar
@@ -40,8 +40,8 @@ class Map(Protocol):
 
     here: int
     cell_m: float
-    agrees: bool  # whether the last look agreed with where the robot believed itself to be
-    islands: Islands
+    agrees: bool  # whether the last observation agreed with where the robot believed itself to be
+    submaps: Submaps
     pose_filter: PoseFilter
 
     def __len__(self) -> int: ...
@@ -50,25 +50,25 @@ class Map(Protocol):
     @property
     def views(self) -> NDArray[np.int64]: ...
     @property
-    def island_of(self) -> NDArray[np.int32]: ...
+    def submap_of(self) -> NDArray[np.int32]: ...
     @property
     def robot_here(self) -> Pose2: ...
 
 
-@kind("familiar ground/2")
+@kind("familiar ground/3")
 class FamiliarGround:
     """`familiar` says whether the robot is at a place that is known well enough."""
 
     def __init__(self) -> None:
         self.familiar = False
-        self.spared = 0  # sights so far that would have become experiences
-        self.adopted = 0  # sights so far that were taken for an experience since it is near in the map
+        self.pruned = 0  # observations so far that would have become experiences
+        self.adopted = 0  # observations so far that were taken for an experience since it is near in the map
         self.faded = -1  # the view whose room the next one gets, -1 for none: the place has room
         self.views_faded = 0  # views so far that another took the room of
-        self.links_spared = 0
+        self.links_pruned = 0
         self._let_go = False  # what was seen in this step
         self._share = np.zeros(1024)
-        self._unseen = np.zeros(1024, np.int64)  # counted sights near each experience since it was recognised
+        self._unseen = np.zeros(1024, np.int64)  # counted observations near each experience since it was recognised
         self._near = np.zeros(MOST_NEAR, np.int64)
         self._found = 0
 
@@ -81,15 +81,15 @@ class FamiliarGround:
     def let_go(self) -> dict[str, int]:
         """How much was not kept so far, for people to see."""
         return {
-            "sights": self.spared,
+            "sights": self.pruned,
             "experiences_adopted": self.adopted,
-            "links": self.links_spared,
+            "links": self.links_pruned,
             "views_faded": self.views_faded,
         }
 
     @property
     def share(self) -> NDArray[np.float64]:
-        """For each experience, which share of the latest sights near it was recognised. A view, with room to spare."""
+        """For each experience, which share of the latest observations near it was recognised. A view, with room to spare."""
         return self._share
 
     def forget(self) -> None:
@@ -109,10 +109,10 @@ class FamiliarGround:
         robot = map_.robot_here
         return int(own[np.argmin(np.hypot(map_.poses[own, 0] - robot.x, map_.poses[own, 1] - robot.y))])
 
-    def spare(self) -> bool:
+    def prune(self) -> bool:
         """Whether to let go what was seen, which fits no experience."""
         self._let_go = self.familiar
-        self.spared += self.familiar
+        self.pruned += self.familiar
         return self.familiar
 
     def well_tied(self, t: Transitions, i: int, j: int) -> bool:
@@ -122,15 +122,15 @@ class FamiliarGround:
         test_familiar_ground.py::test_no_place_gets_links_without_end.
         """
         tied = min(_ties(t, i), _ties(t, j)) >= LINKS
-        self.links_spared += tied
+        self.links_pruned += tied
         return tied
 
     def note(self, map_: Map, seen: Recognition, created: bool, odometry: Odometry, lost: bool, beats: int = 1) -> None:
         """The end of a step: count what was seen for the place where the robot was, and look where it is now.
 
-        Only sights on the way count, since one that lasts says no more than one; and neither do those of nothing. An
-        experience that was just made begins with the mean share of those around it. beats: for how many sights this one
-        counts.
+        Only observations on the way count, since one that lasts says no more than one; and neither do those of nothing. An
+        experience that was just made begins with the mean share of those around it. beats: for how many observations this
+        one counts.
         """
         while len(map_) > len(self._share):
             self._share = np.concatenate([self._share, np.zeros_like(self._share)])
@@ -138,7 +138,7 @@ class FamiliarGround:
         self.views_faded += seen.recruited and seen.view == self.faded
         if not odometry.still and (seen.view >= 0 or seen.familiar):
             hit = map_.agrees and not (created or self._let_go)
-            _count(self._share, self._unseen, self.near, float(hit), weight(1 / SIGHTS, beats), beats)
+            _count(self._share, self._unseen, self.near, float(hit), weight(1 / OBSERVATIONS, beats), beats)
             if hit:
                 self._unseen[map_.here] = 0
         if created:
@@ -152,7 +152,7 @@ class FamiliarGround:
         if lost or map_.pose_filter.sigma_m > SURE * cell_m:
             return
         self._found, total = _near(
-            map_.poses, map_.views, map_.island_of, map_.islands.current, self._share, robot.x, robot.y, robot.heading_rad,
+            map_.poses, map_.views, map_.submap_of, map_.submaps.current, self._share, robot.x, robot.y, robot.heading_rad,
             NEAR * cell_m, NEAR_RAD, self._near,
         )  # fmt: skip
         self.familiar = total * self._found >= ENOUGH
@@ -167,13 +167,13 @@ class FamiliarGround:
 
 @kind("new ground/2")
 class NewGround:
-    """As in the papers: every sight that is unlike all others is kept."""
+    """As in the papers: every observation that is unlike all others is kept."""
 
     near = np.zeros(0, np.int64)  # no experience is known to be near
 
     familiar = False
     faded = -1
-    spared = adopted = links_spared = views_faded = 0
+    pruned = adopted = links_pruned = views_faded = 0
 
     @property
     def let_go(self) -> dict[str, int]:
@@ -185,7 +185,7 @@ class NewGround:
     def of_view(self, _map: Map, _view: int) -> int:
         return -1
 
-    def spare(self) -> bool:
+    def prune(self) -> bool:
         return False
 
     def well_tied(self, _t: Transitions, _i: int, _j: int) -> bool:
@@ -215,8 +215,8 @@ def _count(
 def _near(
     poses: NDArray[np.float64],
     views: NDArray[np.int64],
-    islands: NDArray[np.int32],
-    island: int,
+    submaps: NDArray[np.int32],
+    submap: int,
     share: NDArray[np.float64],
     x: float,
     y: float,
@@ -225,14 +225,14 @@ def _near(
     near_rad: float,
     out: NDArray[np.int64],
 ) -> tuple[int, float]:
-    """The experiences of an island near a place that face alike and have a view, and the sum of their shares.
+    """The experiences of a submap near a place that face alike and have a view, and the sum of their shares.
 
     As many as there is room for in `out`.
     """
     found, total = 0, 0.0
     for i in range(len(poses)):
         dx, dy = poses[i, 0] - x, poses[i, 1] - y
-        other = views[i] < 0 or islands[i] != island
+        other = views[i] < 0 or submaps[i] != submap
         if other or dx * dx + dy * dy > near_m * near_m or found == len(out):
             continue
         turn = abs(poses[i, 2] - heading) % (2 * math.pi)

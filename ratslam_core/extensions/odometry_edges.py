@@ -1,8 +1,8 @@
 """[ours] Between each experience and the one made before it stands odometry alone: the backbone of map correction.
 
 Observations and odometry never share a row. An observation can be wrong by decimetres, or false; odometry is right to a
-few per cent unless the robot is carried or its wheels slip, which is found out later (`soften`).
-test_experience_map_transitions.py::test_no_look_is_averaged_into_the_backbone. `NoOdometryEdges` is the plain twin: in
+few per cent unless the robot is carried or its wheels slip, which is found out later (`inflate_covariance`).
+test_experience_map_transitions.py::test_no_observation_is_averaged_into_the_backbone. `NoOdometryEdges` is the plain twin: in
 the papers only transitions tie experiences.
 """
 
@@ -18,7 +18,7 @@ from ratslam_core.pose_graph.transitions import PreintegratedOdometry, Transitio
 from ratslam_core.types import Odometry, Pose2
 
 
-@kind("odometry edges/1")
+@kind("odometry edges/2")
 class OdometryEdges:
     """Remembers the newest experience: where it was made is known exactly.
 
@@ -30,15 +30,15 @@ class OdometryEdges:
 
     def __init__(self) -> None:
         self.latest = -1
-        self.looked = False  # since then
+        self.observed = False  # since then
         self.since = PreintegratedOdometry()
 
     def move(self, moved: Pose2, odometry: Odometry) -> None:
         self.since.add(moved, odometry)
 
-    def look(self) -> None:
+    def observe(self) -> None:
         """A known experience was recognised: what is learnt next begins with an observation."""
-        self.looked = True
+        self.observed = True
 
     def forget(self) -> None:
         """The robot was carried away: odometry no longer ties it to the newest experience."""
@@ -46,12 +46,12 @@ class OdometryEdges:
 
     def made(self, active: int, driven: int, transitions: Transitions, weight_of: Callable[[float], float]) -> None:
         """`active` was just made; `driven` is the row of the way to it. weight_of: the weight after a distance (m)."""
-        if self.latest >= 0 and self.looked:
+        if self.latest >= 0 and self.observed:
             row = transitions.add(self.latest, active, travelled=False)
             transitions.measure(row, self.since.moved, weight_of(self.since.way_m), transitions.move[row], 0.0)
             transitions.take_time(row, 0.0, self.since.turning_s)
             transitions.chain[driven] = False
-        self.latest, self.looked, self.since = active, False, PreintegratedOdometry()
+        self.latest, self.observed, self.since = active, False, PreintegratedOdometry()
 
 
 @kind("no odometry edges/1")
@@ -61,7 +61,7 @@ class NoOdometryEdges:
     def move(self, _moved: Pose2, _odometry: Odometry) -> None:
         """Nothing is remembered."""
 
-    def look(self) -> None:
+    def observe(self) -> None:
         """Nothing is remembered."""
 
     def forget(self) -> None:
@@ -71,16 +71,17 @@ class NoOdometryEdges:
         """A transition is learnt, and nothing else."""
 
 
-def soften(t: Transitions, first: int, last: int, off_m: float, sigma: float) -> NDArray[np.intp]:
-    """Take the backbone as uncertain where it may be torn after experience `first`, up to `last`; returns these rows.
+def inflate_covariance(t: Transitions, first: int, last: int, off_m: float, sigma: float) -> NDArray[np.intp]:
+    """Inflate the covariance of the odometry constraints that may be broken after experience `first`, up to `last`; returns
+    their rows.
 
     [ours] Observations proved that the robot is not where odometry led: unnoticed, it was carried, or its wheels slipped.
-    The loop closures that follow put both sides of these rows where they belong. With `experience_map.islands` off
-    nothing is proved wrong. test_torn.py::test_an_unnoticed_kidnap_is_found_in_the_backbone.
+    The loop closures that follow put both sides of these rows where they belong. With `experience_map.submaps` off
+    nothing is proved wrong. test_broken_odometry.py::test_an_unnoticed_kidnap_is_found_in_the_backbone.
 
     off_m: by how much they were wrong together; sigma: of odometry over one step, m.
     """
-    rows = torn(t, first, last)
+    rows = broken(t, first, last)
     if len(rows):
         t.weight[rows] = 1 / (1 / t.weight[rows] + (off_m / sigma) ** 2 / len(rows))
         t.believed[rows] = np.minimum(t.believed[rows], t.weight[rows])
@@ -93,8 +94,8 @@ def open_way_m(t: Transitions, first: int, last: int) -> float:
     return float(np.hypot(t.move[rows, 0], t.move[rows, 1]).sum())
 
 
-def torn(t: Transitions, first: int, last: int) -> NDArray[np.intp]:
-    """The rows of the last stretch of the backbone, between these experiences, that no loop closure bridges: what went wrong
+def broken(t: Transitions, first: int, last: int) -> NDArray[np.intp]:
+    """The broken odometry constraints: the last stretch, between these experiences, that no loop closure bridges. What went wrong
     did not happen between places that one ties together past the gap."""
     rows = _unbridged(t, first, last)
     newer = t.ends[rows].max(axis=1)

@@ -1,9 +1,9 @@
-"""[ours] Where the robot is in the map: each look is weighed against odometry.
+"""[ours] Where the robot is in the map: each observation is weighed against odometry.
 
-A single look is precise to decimetres and degrees only. If each were taken as it is, the estimate would swerve.
-test_pose_filter.py::test_a_doubtful_look_moves_the_belief_little. A look without a sigma is believed as it is, as in ACRA
+A single observation is precise to decimetres and degrees only. If each were taken as it is, the estimate would swerve.
+test_pose_filter.py::test_an_uncertain_observation_moves_the_estimate_little. One without a sigma is believed as it is, as in ACRA
 2006 section 3: the robot is at the active experience, moved on by the odometry since
-(test_pose_filter.py::test_a_look_without_a_sigma_is_where_the_robot_is).
+(test_pose_filter.py::test_an_observation_without_a_sigma_is_where_the_robot_is).
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ import math
 from disk import kind
 from ratslam_core.types import IDENTITY, Pose2, wrap_angle
 
-SNAP, SNAP_RAD = 4.0, 0.8  # cells; a look farther off, or turned by more, is believed at once
+SNAP, SNAP_RAD = 4.0, 0.8  # cells; an observation farther off, or turned by more, is believed at once
 LEAST_SIGMA = 0.24  # cells: the error of the estimate is never taken as smaller, so that it can follow the map
 
 
@@ -42,12 +42,12 @@ class PoseFilter:
         self.local = self.local.compose(moved)
         self.sigma_m += drift_m
 
-    def see(self, look: Pose2, sigma_m: float) -> bool:
-        """A look puts the robot at `look`, give or take `sigma_m`. Returns whether that agrees with the pose so far."""
-        dx, dy = look.x - self.local.x, look.y - self.local.y
-        turn = wrap_angle(look.heading_rad - self.local.heading_rad)
+    def see(self, observation: Pose2, sigma_m: float) -> bool:
+        """The robot was observed at `observation`, give or take `sigma_m`. Returns whether that agrees with the pose so far."""
+        dx, dy = observation.x - self.local.x, observation.y - self.local.y
+        turn = wrap_angle(observation.heading_rad - self.local.heading_rad)
         if math.hypot(dx, dy) > SNAP * self.cell_m or abs(turn) > SNAP_RAD:
-            self.local, self.sigma_m = look, sigma_m
+            self.local, self.sigma_m = observation, sigma_m
             return False
         own = max(self.sigma_m, LEAST_SIGMA * self.cell_m)
         gain = own**2 / (own**2 + sigma_m**2)

@@ -35,7 +35,7 @@ def experience_map(map_: ExperienceMap, views: int) -> None:
     true(map_._temporal_map._map is map_, "the temporal map must be of the same experiences")
     experiences(map_._experiences, views)
     n = len(map_)
-    within("an island", map_._experiences.island[:n], 0, map_.islands.begun)
+    within("a submap", map_._experiences.submap[:n], 0, map_.submaps.begun)
     transitions(map_.transitions, n)
     whole("the active experience", map_.here, 0 if n else -1, n - 1)
     pose("the robot's place", map_.pose_filter.local)
@@ -57,13 +57,13 @@ def experience_map(map_: ExperienceMap, views: int) -> None:
         _solver(map_.optimiser)
     if map_._arrival is not None:
         _arrival(map_._arrival, map_.transitions.count)
-    whole("the latest island", map_.islands.begun)
-    whole("the island", map_.islands.current, 0, map_.islands.begun)
-    whole("joined islands", map_.islands.joined, 0, map_.islands.begun)
-    if map_.islands.merge is not None:
-        whole("the first experience of a merge", map_.islands.merge.first, 0, n)
-        number("the log odds of a merge", map_.islands.merge.log_odds, -LARGEST, LARGEST)
-    _evidence(map_.evidence, n, map_.islands.begun)
+    whole("the latest submap", map_.submaps.begun)
+    whole("the submap", map_.submaps.current, 0, map_.submaps.begun)
+    whole("merged submaps", map_.submaps.merged, 0, map_.submaps.begun)
+    if map_.submaps.last_merge is not None:
+        whole("the first experience of a merge", map_.submaps.last_merge.first, 0, n)
+        number("the log odds of a merge", map_.submaps.last_merge.log_odds, -LARGEST, LARGEST)
+    _evidence(map_.evidence, n, map_.submaps.begun)
 
 
 def _evidence(evidence: Evidence, n: int, submaps: int) -> None:
@@ -87,13 +87,13 @@ def _evidence(evidence: Evidence, n: int, submaps: int) -> None:
 
 
 def _ground(ground: FamiliarGround, n: int, views: int) -> None:
-    for name in ("spared", "adopted", "links_spared", "views_faded"):
+    for name in ("pruned", "adopted", "links_pruned", "views_faded"):
         whole(name, getattr(ground, name))
     share = array("shares", ground._share, np.float64, (None,))
-    true(len(share) >= n, "each experience must have a share of recognised sights")
+    true(len(share) >= n, "each experience must have a share of recognised observations")
     within("a share", share, 0.0, 1.0)
     unseen = array("unseen", ground._unseen, np.int64, share.shape)
-    within("a count of sights", unseen, 0, MOST)
+    within("a count of observations", unseen, 0, MOST)
     whole("the faded view", ground.faded, -1, views - 1)
     near = array("what is near", ground._near, np.int64, (MOST_NEAR,))
     within("an experience nearby", near[: whole("how many are near", ground._found, 0, MOST_NEAR)], 0, n - 1)
@@ -126,7 +126,7 @@ def experiences(known: Experiences, views: int) -> None:
     array("states", known.at, np.float64, (room, 3))
     array("the experiences' views", known.view, np.int64, (room,))
     n = whole("the number of experiences", known.count, 0, room)
-    within("an island", array("islands", known.island, np.int32, (room,))[:n], 0, MOST)
+    within("a submap", array("submaps", known.submap, np.int32, (room,))[:n], 0, MOST)
     within("a place in the map", known.pose[:n, :2], -FAR_M, FAR_M)
     within("a heading in the map", known.pose[:n, 2], -TURN, TURN)
     for axis in range(3):

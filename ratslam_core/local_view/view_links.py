@@ -81,7 +81,7 @@ class ViewLinks:
             cells, activity, slot, self._seen, np.float32(eta), np.float32(self.params.decay),
         )  # fmt: skip
         most = self.params.most_links
-        if most and block[1] > most + most // 4:  # not with every sight, since to find the weakest takes time
+        if most and block[1] > most + most // 4:  # not with every observation, since to find the weakest takes time
             self._forget_weakest(view, most)
 
     def _forget_weakest(self, view: int, most: int) -> None:
@@ -107,8 +107,8 @@ class ViewLinks:
     def recall(self, view: int, lost: bool = False) -> tuple[NDArray[np.int32], NDArray[np.float32]]:
         """What the active view injects: min(beta, s_max) per link. ACRA 2004 eq. 4.
 
-        [ours] Scaled down so that all links together inject at most `injection`: one look-alike must not move a packet,
-        but several views that agree must. A lost robot's view injects LOST in sum.
+        [ours] Scaled down so that all links together inject at most `injection`: one view must not move a packet, since it may
+        be perceptual aliasing, but several that agree must. A lost robot's view injects LOST in sum.
         test_view_links.py::test_injection_is_capped_in_sum.
         """
         cells, strength = self.of(view)

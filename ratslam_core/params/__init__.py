@@ -92,7 +92,7 @@ class LocalViewParams:
         check_ranges(self)
 
 
-@kind("parameters of experience map/5")
+@kind("parameters of experience map/7")
 @dataclass(frozen=True, slots=True)
 class ExperienceMapParams:
     """Experiences, their links and the correction of the map (B 4, D 3)."""
@@ -117,10 +117,10 @@ class ExperienceMapParams:
         0.05, "error of a match per level of its difference; worse matches weigh less in map correction, 0 = all alike",
         0.0, 1.0, "m per level")
     odometry_drift: float = param(0.05, "growth of the odometry error with the distance driven", 0.0, 1.0, "m/m")
-    islands: bool = param(
-        True, "a robot that was carried maps a submap, merged where evidence is strong; off = it believes each look")
+    submaps: bool = param(
+        True, "a robot that was carried maps a submap, merged where evidence is strong; off = it believes each observation")
     zone_offset: bool = param(True, "the robot enters an experience's zone beside its centre; off = at its centre")
-    best_look: bool = param(
+    best_observation: bool = param(
         True, "a transition is measured where the robot comes nearest to the experience; off = where it enters the zone")
     odometry_edges: bool = param(
         True, "odometry also ties experiences made one after the other when known ones lie between", live=False)
@@ -128,7 +128,7 @@ class ExperienceMapParams:
     link_confidence: float = param(
         0.2, "a link with less confidence is deleted; 0 = never", 0.0, 1.0, symbol="c_min", source="D 3.4; value ours")
     link_trials: int = param(5, "least trials before a link is deleted", 1, 1000, symbol="n_min")
-    robust: bool = param(True, "looks and odometry that the map contradicts weigh less in the exact correction")
+    robust: bool = param(True, "outliers weigh less in the exact correction: observations and odometry that the map contradicts")
     calibrate: bool = param(True, "learn the bias of the yaw rate from what the map cannot explain")
     sweep: str = param(
         "by experience",
@@ -145,7 +145,7 @@ class ExperienceMapParams:
         "how large a bias of the yaw rate may well be; what a few short loops seem to show beyond it is not believed",
         1e-4, 10.0, "rad/s")
     familiar_ground: bool = param(
-        True, "ground that is recognised often gets no more views and experiences; off = every new sight is kept",
+        True, "ground that is recognised often gets no more views and experiences; off = every new observation is kept",
         live=False)
     shortcut_m: float = param(
         0.0, "routes may cross between experiences closer than this in the map; 0 = only along links", 0.0, 5.0, "m",
@@ -211,7 +211,7 @@ class EvidenceParams:
     merge: float = param(6.9, "log odds above which submaps are merged", 0.0, 100.0, "nats")
     unnoticed: float = param(11.0, "log odds against having been carried unnoticed", 0.0, 100.0, "nats")
     gate_rad: float = param(
-        3.2, "a look that would turn the robot farther than this puts it in doubt; 3.2 = none does, however far it turns",
+        3.2, "validation gate: an observation that would turn the robot farther puts it in doubt; 3.2 = none does",
         0.05, 3.2, "rad")
 
     def __post_init__(self) -> None:

@@ -28,7 +28,7 @@ ADDITIONS = (
     Addition(
         "capped injection",
         "all links of a view together inject at most a fixed amount",
-        "one look-alike must not move a packet; several views that agree must",
+        "one view, perhaps perceptual aliasing, must not move a packet; several that agree must",
         {"local_view.capped": False},
     ),
     Addition(
@@ -53,24 +53,24 @@ ADDITIONS = (
         "place within the zone",
         "the robot may be beside an experience's centre, and a transition is measured where it comes nearest to it",
         "the robot enters a zone at its edge, half a metre from where the experience was made",
-        {"experience_map.zone_offset": False, "experience_map.best_look": False},
+        {"experience_map.zone_offset": False, "experience_map.best_observation": False},
     ),
     Addition(
         "uncertain looks",
-        "a look is weighed against odometry, and a passage in map correction, by how precisely it is known",
-        "looks are imprecise, odometry over one step is not; taken as they are, the estimate swerves and the map bends",
+        "an observation is weighed against odometry, and a passage in map correction, by how precisely it is known",
+        "observations are imprecise, odometry over one step is not; taken as they are, the estimate swerves and the map bends",
         {"experience_map.anchor_sigma": 0.0, "experience_map.odometry_drift": 0.0},
     ),
     Addition(
         "robust closures",
-        "links that the map contradicts weigh less in its exact correction; closures that no map brings together are given up",
-        "wrong closures must not bend the whole map",
+        "outliers, which the map contradicts, weigh less in its correction; closures that no map brings together are given up",
+        "false loop closures must not bend the whole map",
         {"experience_map.robust": False},
     ),
     Addition(
         "odometry edges",
         "odometry alone ties experiences made one after the other, even when known ones lie between",
-        "looks, averaged into the rigid chain of odometry or interrupting it, bend and shrink the map",
+        "observations, averaged into the rigid chain of odometry or interrupting it, bend and shrink the map",
         {"experience_map.odometry_edges": False},
     ),
     Addition(
@@ -88,8 +88,8 @@ ADDITIONS = (
     Addition(
         "law of evidence",
         "what is seen where the robot cannot be is weighed; a robot that was carried maps a submap, merged at odds of 1000 to 1",
-        "look-alikes that are believed at once tie places together that are far apart",
-        {"experience_map.islands": False},
+        "perceptual aliasing, believed at once, makes false loop closures between places far apart",
+        {"experience_map.submaps": False},
     ),
     Addition(
         "kidnap detector",
@@ -105,7 +105,7 @@ ADDITIONS = (
     ),
     Addition(
         "familiar ground",
-        "where enough of the sights are recognised, no more views, experiences and links are learnt",
+        "where enough of the observations are recognised, no more views, experiences and links are learnt",
         "otherwise the memory grows for as long as the robot drives, in a place that never changes",
         {"experience_map.familiar_ground": False},
     ),

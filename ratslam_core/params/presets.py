@@ -19,7 +19,7 @@ _ALSO_OFF: dict[str, Value] = {
 }
 _PLAIN: dict[str, Value] = {name: value for addition in ADDITIONS for name, value in addition.off.items()} | _ALSO_OFF
 # B to D. Nobody tells the activity of an active local view cell: a tenth, at the learning rate of 0.15. A link saturates so
-# that a single look moves no packet, as D's table demands, which is flat in N_vis. Equations B12-14 and D7 diverge
+# that a single observation moves no packet, as D's table demands, which is flat in N_vis. Equations B12-14 and D7 diverge
 # unless their sums are divided by the number of links. In D5, experience j lies where it is relative to experience i itself,
 # not to where the robot entered its zone. docs/findings.md has each with and without it.
 _READ: dict[str, Value] = {

@@ -18,7 +18,7 @@ from ratslam_core.types import Packet, Pose2
 BUCKET = 4  # cells and layers along a side
 
 
-@kind("experiences/3")
+@kind("experiences/4")
 class Experiences:
     """States, scenes and map poses, row by row. Arrays have room to spare; `count` rows are used."""
 
@@ -29,23 +29,23 @@ class Experiences:
         self.pose = np.zeros((1024, 3))  # x, y, heading in the map
         self.at = np.zeros((1024, 3))  # x', y', theta' in cells and layers
         self.view = np.zeros(1024, np.int64)
-        self.island = np.zeros(1024, np.int32)  # the map that it is part of: extensions/islands.py
+        self.submap = np.zeros(1024, np.int32)  # the map that it is part of: extensions/submaps.py
         self._newest_of_view: dict[int, int] = {}
         self._before_of_view = np.full(1024, -1, np.int64)  # the experience before it of the same view, -1 for none
         self._newest_in = np.full([-(-n // BUCKET) for n in shape], -1, np.int64)
         self._before_in = np.full(1024, -1, np.int64)
 
-    def add(self, packet: Packet, view: int, pose: Pose2, island: int = 0) -> int:
+    def add(self, packet: Packet, view: int, pose: Pose2, submap: int = 0) -> int:
         """One more experience; returns its number."""
         if self.count == len(self.pose):
-            for name in ("pose", "at", "view", "island", "_before_of_view", "_before_in"):
+            for name in ("pose", "at", "view", "submap", "_before_of_view", "_before_in"):
                 array = getattr(self, name)
                 setattr(self, name, np.concatenate([array, np.zeros_like(array)]))
         i = self.count
         n_theta, n_y, n_x = self.shape
         x, y, theta = self._state(packet)
         self.pose[i] = pose.x, pose.y, pose.heading_rad
-        self.at[i], self.view[i], self.island[i] = (x, y, theta), view, island
+        self.at[i], self.view[i], self.submap[i] = (x, y, theta), view, submap
         bucket = int(theta) % n_theta // BUCKET, int(y) % n_y // BUCKET, int(x) % n_x // BUCKET
         self._before_of_view[i] = self._newest_of_view.get(view, -1)
         self._newest_of_view[view] = i
@@ -107,13 +107,13 @@ class Experiences:
         p: ExperienceMapParams,
         robot: Pose2,
         blind_m: float,
-        reach_m: float = math.inf,
-        island: int = 0,
+        gate_m: float = math.inf,
+        submap: int = 0,
     ) -> int:
         """The experience with the most energy above the threshold, the oldest of equals; -1 for none.
 
-        Where views tell experiences apart (`match_view`), only those count that are within `reach_m` of the robot in the
-        map and lie on this island.
+        Where views tell experiences apart (`match_view`), only those count that are on this submap and within `gate_m` of the
+        robot in the map, the validation gate.
 
         [ours] When there is nothing to see, only the pose cells tell places apart, and they may use the same cells for
         places far apart. The experience must then be within `blind_m` of the robot in the map, too.
@@ -123,14 +123,14 @@ class Experiences:
         state = (*self._state(packet), *self.shape, p.zone_xy, p.zone_theta)
         if p.match_view:
             newest = self._newest_of_view.get(view, -1)
-            near = min(blind_m, reach_m) if view < 0 else reach_m
+            near = min(blind_m, gate_m) if view < 0 else gate_m
             return _best_in_chain(
                 newest, self._before_of_view, self.at, *state, old, -1, p.threshold, self.pose, robot.x, robot.y, near,
-                self.island, island,
+                self.submap, submap,
             )[0]  # fmt: skip
         if old:
             return _best_of_all(self.at[: self.count], *state, p.threshold)
-        return _best_in_buckets(self._newest_in, self._before_in, self.at, *state, p.threshold, self.pose, self.island)
+        return _best_in_buckets(self._newest_in, self._before_in, self.at, *state, p.threshold, self.pose, self.submap)
 
 
 @njit(cache=True, nogil=True, inline="always")
@@ -195,12 +195,12 @@ def _best_in_chain(
     near_x: float,
     near_y: float,
     near: float,
-    islands: NDArray[np.int32],
-    island: int,
+    submaps: NDArray[np.int32],
+    submap: int,
 ) -> tuple[int, float]:
     i = newest
     while i >= 0:
-        counts = island < 0 or islands[i] == island
+        counts = submap < 0 or submaps[i] == submap
         if counts and (near == np.inf or math.hypot(pose[i, 0] - near_x, pose[i, 1] - near_y) <= near):
             energy = _energy(x, y, theta, at, i, n_theta, n_y, n_x, zone_xy, zone_theta, old)
             if energy > most or (energy == most and i < best):
@@ -224,7 +224,7 @@ def _best_in_buckets(
     zone_theta: float,
     most: float,
     pose: NDArray[np.float64],
-    islands: NDArray[np.int32],
+    submaps: NDArray[np.int32],
 ) -> int:
     """The best experience in the buckets that the zone touches."""
     best = -1
@@ -240,7 +240,7 @@ def _best_in_buckets(
                 head = newest[bucket]
                 best, most = _best_in_chain(
                     head, before, at, x, y, theta, n_theta, n_y, n_x, zone_xy, zone_theta, False, best, most,
-                    pose, 0.0, 0.0, np.inf, islands, -1,
+                    pose, 0.0, 0.0, np.inf, submaps, -1,
                 )  # fmt: skip
     return best
 

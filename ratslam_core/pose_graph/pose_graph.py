@@ -30,7 +30,7 @@ class PoseGraph:
         self._experiences = Experiences(shape)
         self.transitions = Transitions()
         self.yaw_bias = 0.0  # rad/s, learnt: odometry turns too far by so much
-        self.closures = 0  # links made to experiences that existed before
+        self.closures = 0  # loop closures: links made to experiences that existed before
         self.steps = 0  # of correction
         self._driven_m = self._driving_s = 0.0
 
@@ -60,9 +60,9 @@ class PoseGraph:
         return self._experiences.view[: self._experiences.count]
 
     @property
-    def island_of(self) -> NDArray[np.int32]:
-        """The number of the island that each experience lies on, shape (n,): extensions/islands.py. A view."""
-        return self._experiences.island[: self._experiences.count]
+    def submap_of(self) -> NDArray[np.int32]:
+        """The number of the submap that each experience lies on, shape (n,): extensions/submaps.py. A view."""
+        return self._experiences.submap[: self._experiences.count]
 
     def pose(self, experience: int) -> Pose2:
         """An experience's place in the map."""

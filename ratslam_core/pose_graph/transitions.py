@@ -67,7 +67,7 @@ class Transitions:
     def _room(self) -> int:
         """An empty row. [ours] That of a deleted observation, or else one more, as in the plain twin (`reuses` off).
 
-        test_link_confidence.py::test_a_deleted_look_leaves_its_row_to_the_next.
+        test_link_confidence.py::test_a_deleted_observation_leaves_its_row_to_the_next.
         """
         if self.reuses and self.free:
             row = self.free.pop()

@@ -1,8 +1,8 @@
 """[ours] A view as 12 x 8 levels that hardly depend on the light, and the echoes of the sonars.
 
 ACRA 2006 section 7 compares grey levels: `Template` is the plain twin. Lamps and daylight change these, and walls look
-alike; the sonars see in the dark and tell many look-alikes apart. benchmarks/recognition.py measures what each part is
-worth. test_image_and_sonars.py::{test_light_is_mostly_taken_off, test_sonars_tell_look_alikes_apart},
+alike; the sonars see in the dark and undo much of this perceptual aliasing. benchmarks/recognition.py measures what each part is
+worth. test_image_and_sonars.py::{test_light_is_mostly_taken_off, test_sonars_tell_aliased_places_apart},
 test_front_ends.py::test_a_bare_wall_shows_nothing_to_the_front_end_that_is_ours.
 """
 

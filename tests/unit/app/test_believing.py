@@ -22,13 +22,13 @@ def test_who_believes_is_not_lost_and_what_is_made_is_of_the_submap() -> None:
     map_, cells, apart = session.brain.experience_map, session.brain.pose_cells, list[float]()
     for _ in range(1800):
         session.tick()
-        if (state := state_of(map_, map_.robot, map_.islands.current)) is not None:
+        if (state := state_of(map_, map_.robot, map_.submaps.current)) is not None:
             apart.append(cells.cells_apart(state[0], state[1], cells.winner.x, cells.winner.y))
     # a place stands for the state that the pose cells have there: the winning packet's, to within an experience's zone
     assert len(apart) > 1700
     assert np.median(apart) < 1
     assert np.quantile(apart, 0.9) < 2 * map_.params.zone_xy
-    assert state_of(map_, map_.robot.compose(Pose2(50.0, 0.0, 0.0)), map_.islands.current) is None
+    assert state_of(map_, map_.robot.compose(Pose2(50.0, 0.0, 0.0)), map_.submaps.current) is None
     assert state_of(map_, map_.robot, 7) is None
     known = len(map_)
     history, births = History(session), session.evaluation.births(known)

@@ -40,7 +40,7 @@ def test_whichever_way_they_face() -> None:
 
 
 def test_what_can_be_reached_comes_first() -> None:
-    """The second row is an island: a click nearest to it means the row on which the robot is, unless none is near."""
+    """The second row is a submap: a click nearest to it means the row on which the robot is, unless none is near."""
     map_ = twice_along()
     map_.landed = 13
     for robot_x in (0.5, 3.5):

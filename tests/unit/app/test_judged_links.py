@@ -1,4 +1,4 @@
-"""False looks, torn odometry and closed loops, on small maps of which everything is known."""
+"""False observations, broken odometry and closed loops, on small maps of which everything is known."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from app.evaluation import backbone, looks, loops_closed
+from app.evaluation import backbone, loops_closed, observations
 from ratslam_core import ExperienceMap, Pose2
 
 TICK_S = 0.1
@@ -41,25 +41,25 @@ WAY = [Pose2(0.5 * k, 0.2 * k, 0.1 * k) for k in range(10)]
 @given(st.integers(0, 9), st.integers(0, 9), st.floats(-4, 4), st.floats(-4, 4), st.floats(-3, 3))
 def test_a_link_is_off_by_as_much_as_its_end_is_elsewhere(i: int, j: int, x: float, y: float, turn: float) -> None:
     map_ = linked(WAY, [(i, j, Pose2(x, y, turn), False)])
-    found = looks(map_, births_along(WAY))
+    found = observations(map_, births_along(WAY))
     assert found.ends.tolist() == [[i, j]]
     assert found.off_m[0] == pytest.approx(math.hypot(x, y), abs=1e-9)
     assert bool(found.false[0]) == (found.off_m[0] > 1.0)
 
 
-def test_looks_and_odometry_are_judged_apart_where_they_hold_and_join_what_is_known() -> None:
+def test_observations_and_odometry_are_judged_apart_where_they_hold_and_join_what_is_known() -> None:
     wrong, right = Pose2(1.2, 0.0, 0.0), Pose2(0.3, 0.0, 0.0)
     rows = [(0, 1, right, True), (1, 2, wrong, True), (2, 0, right, False), (3, 0, wrong, False), (4, 0, wrong, False)]
     map_, births = linked(WAY, rows), births_along(WAY)
     map_.transitions.believed[3] = 0.1
     assert backbone(map_, births).false.tolist() == [False, True]
-    assert looks(map_, births).false.tolist() == [False, True, True]
-    assert looks(map_, births).believed.tolist() == [True, False, True]
+    assert observations(map_, births).false.tolist() == [False, True, True]
+    assert observations(map_, births).believed.tolist() == [True, False, True]
     births[4] = np.nan
     map_.transitions.weight[2] = 0.0  # dropped
-    assert looks(map_, births).ends.tolist() == [[3, 0]]
+    assert observations(map_, births).ends.tolist() == [[3, 0]]
     map_.transitions.weight[3] = (0.01 / 2.0) ** 2  # it says itself that it may be 2 m off
-    assert len(looks(map_, births).ends) == 0
+    assert len(observations(map_, births).ends) == 0
 
 
 def rounds(islands: list[tuple[float, float, float]], steps: int = 100) -> tuple[list[Pose2], NDArray[np.float64]]:
@@ -82,7 +82,7 @@ def closed(
 
 
 @pytest.mark.parametrize("sense", [1.0, -1.0])
-def test_a_loop_is_closed_by_a_look_from_its_end_to_its_beginning(sense: float) -> None:
+def test_a_loop_is_closed_by_an_observation_from_its_end_to_its_beginning(sense: float) -> None:
     path, islands = rounds([(3.0, 1.0, sense)])
     assert closed(path, islands, [(99, 1)]) == closed(path, islands, [(1, 99)]) == 1
     assert closed(path, islands, [(99, 1)], born_late_s=0.04) == 1, "also where no tick of the path is at a birth"

@@ -74,7 +74,7 @@ def test_an_opening_is_tried_again_later() -> None:
         assert len(openings(ground, map_)[0]) == before
 
 
-def test_what_lies_on_another_island_hides_no_opening() -> None:
+def test_what_lies_on_another_submap_hides_no_opening() -> None:
     """The robot was carried to where, for all it knows, the rest of its map might be."""
     ground, map_ = driven(along(30, y=2.5) + along(30))
     map_.robot = Pose2(1.0, 0.0, 0.0)

@@ -110,8 +110,8 @@ def in_a_large_map(p: PilotParams) -> Trace:
     yield from on_trips(replace(p, far_openings=False, loop_share=0.0), slower=2.0)
 
 
-def on_an_island(p: PilotParams) -> Trace:
-    """The same, where it was carried to the second wall, and another island is smaller than its own."""
+def on_a_submap(p: PilotParams) -> Trace:
+    """The same, where it was carried to the second wall, and another submap is smaller than its own."""
     yield from on_trips(replace(p, far_openings=False, loop_share=0.0), landed=20)
 
 
@@ -159,7 +159,7 @@ OTHER: dict[Callable[[PilotParams], Trace], dict[str, float]] = {
     on_trips: {"seek_after_s": 20.0, "return_after_m": 10.0, "far_openings": False, "home_share": 0.0},
     on_near_trips: {"return_sigma_m": 0.3},
     in_a_large_map: {"openings_every": 1},
-    on_an_island: {"seek": False, "search": False},
+    on_a_submap: {"seek": False, "search": False},
     along_a_corridor: {"far_look_back_m": 2.0},
     at_a_loop: {"loop_share": 0.0},
 }

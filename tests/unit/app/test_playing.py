@@ -119,7 +119,7 @@ def test_after_a_gap_the_robot_knows_that_it_does_not_know(run: tuple[Session, H
     k = next(k for k in range(200, 400) if abs(blind[k].yaw_rate or 0.0) > 0.2)  # it does not stand
     late = [replace(m, time_s=m.time_s + 5, dt=m.dt + 5 * (i == 0)) for i, m in enumerate(blind[k + 20 : k + 60])]
     about = replace(run[1].about, has=frozenset({"camera", "yaw rate", "throttle", "ranges"}))
-    lost = [s.brain.experience_map.islands.begun for s in Player(Held(about, blind[:k] + late)).steps()]
+    lost = [s.brain.experience_map.submaps.begun for s in Player(Held(about, blind[:k] + late)).steps()]
     assert (lost[k - 1], lost[k]) == (0, 1)
 
 

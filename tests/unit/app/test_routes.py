@@ -205,8 +205,8 @@ def test_a_door_that_opens_again_is_found_again() -> None:
 
 
 def test_carried_away_from_the_goal_it_looks_for_the_way_back() -> None:
-    """It stands at its goal when it is put down elsewhere. Once it notices, it is on an island: it does not stand there, as
-    if it had arrived, but drives; and it goes on to the goal when the island has become a part of the map again."""
+    """It stands at its goal when it is put down elsewhere. Once it notices, it is on a submap: it does not stand there, as
+    if it had arrived, but drives; and it goes on to the goal when the submap has become a part of the map again."""
     run = a_run((2.0, 0.0, 2.0, 2.8), stops=[(1.0, 0.6), (1.0, 3.4), (3.0, 3.4), (3.0, 0.6)])
     run.pilot.set_goal(0)
     run.run(5.0)
@@ -240,7 +240,7 @@ def test_who_is_lost_has_not_arrived() -> None:
     map_.lost = True
     run.run(1.0)
     assert run.pilot.goal_state == (goal, "exploring")
-    map_.landed, map_.robot = 1, Pose2(1.0, 0.6, 0.0)  # it is on an island, the goal is not
+    map_.landed, map_.robot = 1, Pose2(1.0, 0.6, 0.0)  # it is on a submap, the goal is not
     follower = RouteFollower(goal)
     for map_.lost, state in ((True, "exploring"), (False, "unreachable")):
         for _ in range(600):

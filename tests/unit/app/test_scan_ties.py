@@ -1,4 +1,4 @@
-"""A laser ties experiences by their scans, and says whether a look is true."""
+"""A laser ties experiences by their scans, and says whether an observation is true."""
 
 from __future__ import annotations
 
@@ -46,24 +46,24 @@ def test_a_scan_ties_an_experience_to_an_old_one_where_it_belongs() -> None:
     assert math.hypot(last.x - first.x, last.y - first.y) < 0.15
 
 
-def test_a_true_look_becomes_as_precise_as_the_scans() -> None:
+def test_a_true_observation_becomes_as_precise_as_the_scans() -> None:
     ties = ScanTies(ABOUT)
     map_ = _made(ties, room(0, 0, 0))
     ties.see(room(HERE.x, HERE.y, HERE.heading_rad))
-    found = ties.confirms(map_, 0, LOOK)
+    found = ties.verified(map_, 0, LOOK)
     assert found is not None
     assert (found[0].x, found[0].y, found[0].heading_rad) == pytest.approx((HERE.x, HERE.y, HERE.heading_rad), abs=0.03)
     assert found[1] < 0.1
 
 
-def test_a_look_alike_is_found_out_by_its_scan() -> None:
+def test_a_false_loop_closure_is_found_out_by_its_scan() -> None:
     """The view is said to be that of the room, but the walls are those of a corridor. The plain twin believes it."""
     ties = ScanTies(ABOUT)
     map_ = _made(ties, room(0, 0, 0))
     ties.see(between_walls(0.6))
-    assert ties.confirms(map_, 0, LOOK) is None
+    assert ties.verified(map_, 0, LOOK) is None
     plain = ScanTies(ABOUT, ScanRules(confirmed=False))
-    assert plain.confirms(_made(plain, room(0, 0, 0)), 0, LOOK) == (LOOK, math.inf)
+    assert plain.verified(_made(plain, room(0, 0, 0)), 0, LOOK) == (LOOK, math.inf)
 
 
 def test_a_scan_must_fit_along_and_both_ways() -> None:
@@ -79,21 +79,21 @@ def test_a_scan_must_fit_along_and_both_ways() -> None:
         ties = ScanTies(ABOUT, rules)
         map_ = _made(ties, before)
         ties.see(now)
-        assert (ties.confirms(map_, 0, Pose2(look, 0.0, 0.0)) is not None) is believed, (rules, look)
+        assert (ties.verified(map_, 0, Pose2(look, 0.0, 0.0)) is not None) is believed, (rules, look)
 
 
 class _Says:
-    """A witness with one answer."""
+    """A verification with one answer."""
 
     def __init__(self, answer: tuple[Pose2, float] | None) -> None:
         self.answer = answer
 
-    def confirms(self, _map: object, _experience: int, _look: Pose2) -> tuple[Pose2, float] | None:
+    def verified(self, _map: object, _experience: int, _observation: Pose2) -> tuple[Pose2, float] | None:
         return self.answer
 
 
 @pytest.mark.parametrize(
-    ("witness", "active", "x"),
+    ("verification", "active", "x"),
     [
         (None, 0, 0.0),
         (_Says((Pose2(0.3, 0.0, 0.0), math.inf)), 0, 0.0),
@@ -102,12 +102,12 @@ class _Says:
     ],
     ids=["nobody", "who cannot say", "who measures", "who denies it"],
 )
-def test_the_map_asks_the_witness(witness: _Says | None, active: int, x: float) -> None:
+def test_the_map_asks_for_geometric_verification(verification: _Says | None, active: int, x: float) -> None:
     """The robot is 0.4 m from its first experience by odometry, and sees its view again, where its packet is."""
     map_, at = RatSlam().experience_map, Packet(9.0, 9.0, 0.0, 1.0)
     map_.step(at, Recognition(0, True, -1, math.inf), Odometry(0.0, 0.0, 1.0))
     map_.step(Packet(30.0, 9.0, 0.0, 1.0), Recognition(1, True, -1, math.inf), Odometry(1.0, 0.0, 1.0))
-    map_.pose_filter.sigma_m = 100.0  # it knows nothing, so that a look that it believes is all that it knows
-    map_.step(at, Recognition(0, False, 0, 0.0), Odometry(-0.6, 0.0, 1.0), witness=witness)
+    map_.pose_filter.sigma_m = 100.0  # it knows nothing, so that an observation that it believes is all that it knows
+    map_.step(at, Recognition(0, False, 0, 0.0), Odometry(-0.6, 0.0, 1.0), verification=verification)
     assert map_.active == active
     assert map_.robot.x == pytest.approx(x, abs=0.02)

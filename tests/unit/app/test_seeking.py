@@ -175,7 +175,7 @@ def test_with_nothing_new_it_goes_where_it_has_not_been_for_longest() -> None:
 
 
 @pytest.mark.parametrize("search", [True, False])
-def test_on_an_island_it_goes_into_every_opening(search: bool) -> None:
+def test_on_a_submap_it_goes_into_every_opening(search: bool) -> None:
     """It has been on new ground for long, and this is a trip to an old place; but it has lost the rest of its map."""
     run = a_run(two_sides(), seek_after_s=1.0, openings_every=2, search=search, **NEAR_ONLY)
     seeker, ground = run.pilot._seeker, ground_of(run, (slice(35, 39), RIGHT, 5.0))
@@ -186,15 +186,15 @@ def test_on_an_island_it_goes_into_every_opening(search: bool) -> None:
         (30, search),
         (2, False),
         (10**9, False),
-    ):  # beside a large island, a tiny one, none
+    ):  # beside a large submap, a tiny one, none
         seeker.stop()
         seeker._trips = 0
         chosen(run)
         assert (seeker._opening is not None, seeker.returning) == (goes_into, not goes_into)
 
 
-def test_on_an_island_it_begins_where_that_began() -> None:
-    """Of two openings the one near the island's first experience is taken, though the other lies nearer to the robot."""
+def test_on_a_submap_it_begins_where_that_began() -> None:
+    """Of two openings the one near the submap's first experience is taken, though the other lies nearer to the robot."""
     map_ = two_sides()
     map_.landed = 30
     map_.link_times /= 2

@@ -40,7 +40,7 @@ class HandMadeMap:
         self.pace = 0.0  # links take as long as `link_times` says, whatever their length
         self.trials: list[tuple[int, int, bool]] = []
         self.lost = False
-        self.landed = 10**9  # experiences from this one on lie on an island of their own
+        self.landed = 10**9  # experiences from this one on lie on a submap of their own
 
     def tried(self, i: int, j: int, reached: bool) -> bool:
         self.trials.append((i, j, reached))
@@ -61,7 +61,7 @@ class HandMadeMap:
         return len(self.poses)
 
     @property
-    def island_of(self) -> NDArray[np.int32]:
+    def submap_of(self) -> NDArray[np.int32]:
         return np.where(np.arange(len(self)) < self.landed, 0, 1).astype(np.int32)
 
     @property

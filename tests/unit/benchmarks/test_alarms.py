@@ -14,7 +14,7 @@ from sim2d import load_world
 def test_few_kidnaps_are_missed_and_driving_is_none() -> None:
     session = Session(load_world("office"), 4, Config())
     moments = list(drive(session, 3.0))
-    assert session.brain.experience_map.islands.begun == 0
+    assert session.brain.experience_map.submaps.begun == 0
     pairs = list(kidnaps(moments, 4))
     assert len(pairs) > 1000
     for before, after in pairs[:100]:

@@ -31,7 +31,7 @@ LAP = round(2 * math.pi / STEP_RAD)
 COLUMN_RAD = math.radians(50) / 12
 SONARS = (-0.5, 0.0, 0.5)
 # each passage counts 1, and who is carried stays on the map
-EXACT = ExperienceMapParams(anchor_sigma=0.0, odometry_drift=0.0, sweeps=0, solve_every=0, islands=False)
+EXACT = ExperienceMapParams(anchor_sigma=0.0, odometry_drift=0.0, sweeps=0, solve_every=0, submaps=False)
 
 
 class Robot:
@@ -42,7 +42,7 @@ class Robot:
         params: ExperienceMapParams | None = None,
         start: Pose2 | None = None,
     ) -> None:
-        believing = replace(params or ExperienceMapParams(), islands=False)
+        believing = replace(params or ExperienceMapParams(), submaps=False)
         self.map = ExperienceMap(SHAPE, CELL_M, believing)
         self.pose = start or Pose2(0.0, 0.0, 0.0)
         self.behaviour = 0

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from ratslam_core import ExperienceMap, ExperienceMapParams, Odometry, Packet, Pose2, Recognition
 from ratslam_core.extensions import evidence as law
 from ratslam_core.extensions.evidence import AGAINST, FOR, LIKENESS, NATS, PRIOR, Evidence, nats
-from ratslam_core.extensions.islands import Islands, Merge, move
+from ratslam_core.extensions.submaps import Merge, Submaps, move
 from ratslam_core.params import EvidenceParams
 from ratslam_core.pose_graph.transitions import Transitions
 
@@ -27,7 +27,7 @@ poses = st.builds(Pose2, st.floats(-9, 9), st.floats(-9, 9), st.floats(-3, 3))
 
 
 @dataclass
-class Sights:
+class Views:
     """A local view that sees the robot's true place: views taken near it are a third as unlike as others are."""
 
     taken: list[Pose2]
@@ -68,7 +68,7 @@ class Known:
 
     def __post_init__(self) -> None:
         self.poses = np.array([[0.4 * k, 0.0, 0.0] for k in range(self.count)])
-        self.views, self.island_of = np.arange(self.count), np.zeros(self.count, np.int32)
+        self.views, self.submap_of = np.arange(self.count), np.zeros(self.count, np.int32)
         self.taken = [Pose2(*row) for row in self.poses.tolist()]
 
     def log_prior(self, _experience: int, _pose: Pose2) -> float:
@@ -81,16 +81,16 @@ def carried(known: Known, expected: Pose2 | None = None, *, sure: bool = True) -
     return evidence
 
 
-def drive(evidence: Evidence, known: Known, sights: Sights, ticks: int, odometry: Odometry = DRIVE) -> None:
+def drive(evidence: Evidence, known: Known, views: Views, ticks: int, odometry: Odometry = DRIVE) -> None:
     """The robot sees after each tick."""
     for _ in range(ticks):
         turn = odometry.yaw_rate * odometry.dt
         way = odometry.speed * odometry.dt
         moved = Pose2(way * math.cos(turn / 2), way * math.sin(turn / 2), turn)
-        sights.robot = sights.robot.compose(moved)
-        sights.twin = None if sights.twin is None else sights.twin.compose(moved)
+        views.robot = views.robot.compose(moved)
+        views.twin = None if views.twin is None else views.twin.compose(moved)
         evidence.move(odometry)
-        evidence.observe(known, sights, 0 if evidence.in_doubt else 1)
+        evidence.observe(known, views, 0 if evidence.in_doubt else 1)
 
 
 def test_the_less_alike_the_less_it_says_and_never_too_much() -> None:
@@ -116,26 +116,26 @@ def test_hypotheses_move_by_odometry(ticks: list[tuple[float, float, float]], st
 
 def test_it_believes_where_it_is_and_is_surer_with_every_metre() -> None:
     known = Known()
-    evidence, sights = carried(known), Sights(known.taken, Pose2(2.0, 0.1, 0.05))
-    drive(evidence, known, sights, 4)
-    assert evidence.belief is None  # one look, however good
-    drive(evidence, known, sights, 30)
+    evidence, views = carried(known), Views(known.taken, Pose2(2.0, 0.1, 0.05))
+    drive(evidence, known, views, 4)
+    assert evidence.belief is None  # one observation, however good
+    drive(evidence, known, views, 30)
     believed = evidence.belief
     assert believed is not None
-    assert math.hypot(believed.pose.x - sights.robot.x, believed.pose.y - sights.robot.y) < 0.4
-    assert abs(believed.pose.heading_rad - sights.robot.heading_rad) < 0.15
+    assert math.hypot(believed.pose.x - views.robot.x, believed.pose.y - views.robot.y) < 0.4
+    assert abs(believed.pose.heading_rad - views.robot.heading_rad) < 0.15
     odds = believed.log_odds
-    drive(evidence, known, sights, 50)
+    drive(evidence, known, views, 50)
     assert evidence.belief is not None
     assert evidence.belief.log_odds > max(odds, evidence.params.merge)
 
 
 def test_who_stands_still_sees_one_thing() -> None:
     known = Known()
-    evidence, sights = carried(known), Sights(known.taken, Pose2(2.0, 0.0, 0.0))
-    drive(evidence, known, sights, 1)
+    evidence, views = carried(known), Views(known.taken, Pose2(2.0, 0.0, 0.0))
+    drive(evidence, known, views, 1)
     before = evidence.hypotheses[:, law.ODDS].copy()
-    drive(evidence, known, sights, 100, Odometry(0.0, 0.0, 0.1))
+    drive(evidence, known, views, 100, Odometry(0.0, 0.0, 0.1))
     assert evidence.hypotheses[: len(before), law.ODDS] == pytest.approx(before)
     assert evidence.belief is None
 
@@ -144,9 +144,9 @@ def test_who_stands_still_sees_one_thing() -> None:
 @given(st.floats(-0.4, 0.4))
 def test_on_new_ground_it_believes_nothing(yaw_rate: float) -> None:
     known = Known()
-    evidence, sights = carried(known), Sights(known.taken, Pose2(0.0, 40.0, 1.0))
+    evidence, views = carried(known), Views(known.taken, Pose2(0.0, 40.0, 1.0))
     for _ in range(20):
-        drive(evidence, known, sights, 5, Odometry(0.3, yaw_rate, 0.1))
+        drive(evidence, known, views, 5, Odometry(0.3, yaw_rate, 0.1))
         assert evidence.belief is None
 
 
@@ -154,9 +154,9 @@ def test_of_two_places_that_look_the_same_neither_is_believed() -> None:
     """In a twin corridor the same can be seen, metre by metre."""
     known = Known(60)
     evidence = carried(known)
-    sights = Sights(known.taken, Pose2(2.0, 0.0, 0.0), Pose2(14.0, 0.0, 0.0))
+    views = Views(known.taken, Pose2(2.0, 0.0, 0.0), Pose2(14.0, 0.0, 0.0))
     for _ in range(12):
-        drive(evidence, known, sights, 5)
+        drive(evidence, known, views, 5)
         assert evidence.belief is None
     odds = np.sort(evidence.hypotheses[:, law.ODDS])[-2:]
     assert odds[0] == pytest.approx(odds[1], abs=0.5)
@@ -191,14 +191,14 @@ def test_what_is_moved_keeps_its_shape(robot: Pose2, claimed: Pose2, made: list[
 
 def test_the_younger_submap_becomes_part_of_the_older() -> None:
     for at, other, moved in ((2, 1, [1.0, 2.0]), (1, 2, [-1.0, -2.0])):
-        islands, of, rows = Islands(), np.array([0, 0, 1, 2, 2], np.int32), np.zeros((5, 3))
+        submaps, of, rows = Submaps(), np.array([0, 0, 1, 2, 2], np.int32), np.zeros((5, 3))
         for _ in range(2):
-            islands.begin()
-        islands.current = at
-        islands.join(other, of, rows, Pose2(0.0, 0.0, 0.0), Pose2(1.0, 2.0, 0.0))
+            submaps.begin()
+        submaps.current = at
+        submaps.merge(other, of, rows, Pose2(0.0, 0.0, 0.0), Pose2(1.0, 2.0, 0.0))
         assert of.tolist() == [0, 0, 1, 1, 1]
         assert rows[:, :2].tolist() == [[0.0, 0.0]] * 3 + [moved] * 2
-        assert (islands.current, islands.begun, islands.joined) == (1, 2, 1)
+        assert (submaps.current, submaps.begun, submaps.merged) == (1, 2, 1)
 
 
 class Robot:
@@ -209,7 +209,7 @@ class Robot:
         known = ExperienceMapParams(odometry_drift=0.03, sweeps=0, solve_every=0, **params)
         self.map = ExperienceMap(SHAPE, CELL_M, known)
         self.pose = Pose2(0.0, 0.0, 0.0)
-        self.sights = Sights([])
+        self.views = Views([])
         self.confirmed = True
         self.recognises = False
         self.drive(ticks)
@@ -218,25 +218,25 @@ class Robot:
     def drive(self, ticks: int) -> None:
         for tick in range(ticks):
             self.pose = self.pose.compose(Pose2(0.03, 0.0, 0.0))
-            self.sights.robot = self.pose
-            alike = [view for view in range(len(self.sights.taken)) if self.sights.difference_to(view) < 5]
+            self.views.robot = self.pose
+            alike = [view for view in range(len(self.views.taken)) if self.views.difference_to(view) < 5]
             known = self.recognises and bool(alike)
             new = tick % 13 == 0 and not known
             if new:
-                self.sights.taken.append(self.pose)
-            view = alike[0] if known else len(self.sights.taken) - 1
+                self.views.taken.append(self.pose)
+            view = alike[0] if known else len(self.views.taken) - 1
             packet = Packet(32 + 4 * self.pose.x % 64, 32 + self.pose.y % 64, self.pose.heading_rad, 1.0)
             self.step(packet, Recognition(view, new, view, 1.0, 0.0))
 
-    def look_alike(self, view: int) -> None:
-        """See a view where the pose cells were when it was taken."""
+    def see_aliased(self, view: int) -> None:
+        """Perceptual aliasing: see a view where the pose cells were when it was taken."""
         self.step(Packet(*self.map.cell_state(view)[:3], 1.0), Recognition(view, False, view, 1.0, 0.0))
 
     def step(self, packet: Packet, seen: Recognition) -> None:
-        self.map.step(packet, seen, DRIVE, views=self.sights, witness=self)  # type: ignore[arg-type]
+        self.map.step(packet, seen, DRIVE, views=self.views, verification=self)  # type: ignore[arg-type]
 
-    def confirms(self, _map: object, _experience: int, look: Pose2) -> tuple[Pose2, float] | None:
-        return (look, math.inf) if self.confirmed else None
+    def verified(self, _map: object, _experience: int, observation: Pose2) -> tuple[Pose2, float] | None:
+        return (observation, math.inf) if self.confirmed else None
 
     def carry(self, to: Pose2, *, noticed: bool = True) -> None:
         if noticed:
@@ -256,7 +256,7 @@ def test_what_is_believed_changes_no_map_and_a_submap_is_merged_as_a_whole() -> 
     robot.carry(Pose2(2.0, 0.1, 0.0))
     assert map_.lost
     believed = 0
-    while map_.islands.joined == 0:
+    while map_.submaps.merged == 0:
         robot.drive(1)
         assert np.array_equal(map_.poses[:known], before)
         if map_.belief is not None:
@@ -269,14 +269,14 @@ def test_what_is_believed_changes_no_map_and_a_submap_is_merged_as_a_whole() -> 
     assert not map_.carried
     assert not map_.lost
     assert map_.active < known
-    assert np.all(map_.island_of == 0)
-    made = np.array([[p.x, p.y] for p in robot.sights.taken[known:]])
+    assert np.all(map_.submap_of == 0)
+    made = np.array([[p.x, p.y] for p in robot.views.taken[known:]])
     off = map_.poses[known:, :2] - made[: len(map_) - known]
     assert np.ptp(off, axis=0) == pytest.approx([0.0, 0.0], abs=0.05)  # as a whole
     assert np.abs(off).max() < 0.5
 
 
-def test_a_submap_is_not_merged_where_a_witness_does_not_confirm_it() -> None:
+def test_a_submap_is_not_merged_without_geometric_verification() -> None:
     robot = Robot()
     robot.carry(Pose2(2.0, 0.1, 0.0))
     robot.confirmed = False
@@ -285,16 +285,16 @@ def test_a_submap_is_not_merged_where_a_witness_does_not_confirm_it() -> None:
         robot.drive(1)
         belief = robot.map.evidence.belief
         sure += belief is not None and belief.log_odds > robot.map.evidence.params.merge
-        assert robot.map.islands.joined == 0
+        assert robot.map.submaps.merged == 0
     robot.confirmed = True
     robot.drive(1)
-    assert robot.map.islands.joined == 1
+    assert robot.map.submaps.merged == 1
 
 
-def test_without_submaps_the_first_look_is_believed() -> None:
-    robot = Robot(islands=False)
+def test_without_submaps_the_first_observation_is_believed() -> None:
+    robot = Robot(submaps=False)
     robot.carry(Pose2(2.0, 0.1, 0.0))
-    robot.look_alike(4)
+    robot.see_aliased(4)
     assert robot.map.active == 4
     assert robot.map.evidence.known == 0
 
@@ -322,45 +322,45 @@ def in_doubt(known: Known, prior: float) -> Evidence:
     return evidence
 
 
-def test_looks_alone_never_prevail_against_odometry() -> None:
+def test_observations_alone_never_prevail_against_odometry() -> None:
     """On new ground that looks like a known place, to the last detail and for metre after metre, the robot is where it went."""
     known = Known(60)
     known.robot_here = Pose2(0.0, 40.0, 0.0)
-    evidence, sights = in_doubt(known, -EvidenceParams().unnoticed), Sights(known.taken, Pose2(2.0, 0.0, 0.0))
+    evidence, views = in_doubt(known, -EvidenceParams().unnoticed), Views(known.taken, Pose2(2.0, 0.0, 0.0))
     for _ in range(60):
-        drive(evidence, known, sights, 10)
+        drive(evidence, known, views, 10)
         assert evidence.belief is None
     assert evidence.hypotheses[:, law.ODDS].max() == law.MOST_SAID - evidence.params.unnoticed
 
 
 def test_what_is_missing_where_it_should_be_speaks_against_odometry() -> None:
     known = Known(60)
-    evidence, sights = in_doubt(known, -EvidenceParams().unnoticed), Sights(known.taken, Pose2(2.0, 0.0, 0.0))
+    evidence, views = in_doubt(known, -EvidenceParams().unnoticed), Views(known.taken, Pose2(2.0, 0.0, 0.0))
     known.robot_here = Pose2(14.0, 0.0, 0.0)
     while evidence.belief is None or evidence.belief.log_odds < evidence.params.merge:
-        drive(evidence, known, sights, 1)
+        drive(evidence, known, views, 1)
         known.robot_here = known.robot_here.compose(Pose2(0.03, 0.0, 0.0))
-        assert sights.robot.x < 10.0
+        assert views.robot.x < 10.0
     assert evidence.here < -2.0
-    assert math.hypot(evidence.belief.pose.x - sights.robot.x, evidence.belief.pose.y) < 0.5
+    assert math.hypot(evidence.belief.pose.x - views.robot.x, evidence.belief.pose.y) < 0.5
 
 
-def test_what_lies_within_the_drift_of_odometry_needs_looks_only() -> None:
+def test_what_lies_within_the_drift_of_odometry_needs_observations_only() -> None:
     known = Known(60)
     known.robot_here = Pose2(0.0, 40.0, 0.0)
-    evidence, sights = in_doubt(known, -2.0), Sights(known.taken, Pose2(2.0, 0.0, 0.0))
+    evidence, views = in_doubt(known, -2.0), Views(known.taken, Pose2(2.0, 0.0, 0.0))
     while evidence.belief is None or evidence.belief.log_odds < evidence.params.merge:
-        drive(evidence, known, sights, 1)
-        assert sights.robot.x < 8.0
+        drive(evidence, known, views, 1)
+        assert views.robot.x < 8.0
     assert evidence.here == 0.0
 
 
 def test_where_it_is_mapping_is_no_other_place() -> None:
     known = Known(60)
-    evidence, sights = in_doubt(known, 0.0), Sights(known.taken, Pose2(2.0, 0.0, 0.0))
+    evidence, views = in_doubt(known, 0.0), Views(known.taken, Pose2(2.0, 0.0, 0.0))
     for _ in range(50):
-        drive(evidence, known, sights, 1)
-        known.robot_here = sights.robot.compose(Pose2(0.3, 0.2, 0.2))
+        drive(evidence, known, views, 1)
+        known.robot_here = views.robot.compose(Pose2(0.3, 0.2, 0.2))
         assert evidence.belief is None
     near = evidence.weighed(known.robot_here)[1]
     assert max(near) > 1.0  # beside exactly where it maps, since the map is a little off
@@ -379,9 +379,9 @@ def test_a_doubt_ends_when_nothing_speaks_for_it() -> None:
     assert not evidence.idle
 
 
-def test_one_look_alike_closes_no_loop() -> None:
+def test_perceptual_aliasing_closes_no_loop() -> None:
     robot = Robot(recognises=True)
-    robot.look_alike(3)
+    robot.see_aliased(3)
     assert robot.map.evidence.in_doubt
     assert robot.map.active == len(robot.map) - 1  # it is taken for a new place
     assert (robot.map.closures, robot.map.belief) == (0, None)
@@ -398,7 +398,7 @@ def test_who_was_carried_unnoticed_gives_way_and_its_odometry_with_it() -> None:
         assert robot.pose.x < 11.9
         if map_.evidence.in_doubt:
             assert np.array_equal(map_.poses[:known], before)
-            assert map_.evidence.known == known  # what is made in doubt is no witness
+            assert map_.evidence.known == known  # what is made in doubt says nothing of where it is
     assert map_.corrected == 1
     assert robot.off_m < 0.5
     softer = map_.transitions.weight[: map_.transitions.count] < weights[: map_.transitions.count]
@@ -412,8 +412,8 @@ def merged_wrongly(robot: Robot, sure: float) -> int:
     robot.recognises = False
     robot.drive(40)
     claimed = Pose2(robot.pose.x + 6.0, 0.0, 0.0)
-    map_.islands.join(0, map_.island_of, map_.poses, map_.robot_here, claimed)
-    map_.islands.merge = Merge(known, sure)
+    map_.submaps.merge(0, map_.submap_of, map_.poses, map_.robot_here, claimed)
+    map_.submaps.last_merge = Merge(known, sure)
     t = map_.transitions
     row = t.add(len(map_) - 1, known - 10, travelled=True)
     t.measure(row, Pose2(0.0, 0.0, 0.0), 0.5, t.move[row], 0.0)
@@ -435,7 +435,7 @@ def test_a_merge_that_proves_wrong_is_undone() -> None:
         robot.drive(1)
         assert robot.pose.x < 8.0
     assert robot.off_m < 0.5
-    made = np.array([[p.x, p.y] for p in robot.sights.taken[known : known + 3]])
+    made = np.array([[p.x, p.y] for p in robot.views.taken[known : known + 3]])
     assert map_.poses[known : known + 3, :2] == pytest.approx(made, abs=0.5)
     assert np.array_equal(map_.poses[:known], before)
     assert t.weight[: len(weights)] == pytest.approx(np.where(ties, 0.0, weights))  # odometry is not to blame
@@ -450,16 +450,16 @@ def across(t: Transitions, known: int) -> NDArray[np.bool_]:
 
 
 def test_who_drives_on_unchallenged_need_not_undo_its_merge() -> None:
-    islands = Islands()
-    islands.merge = Merge(3, 7.0)
+    submaps = Submaps()
+    submaps.last_merge = Merge(3, 7.0)
     for metres in (50.0, 49.0):
-        islands.move(metres / CELL_M, 11.0)
-        assert islands.merge is not None
-    islands.move(2.0 / CELL_M, 11.0)
-    assert islands.merge is None
-    islands.merge = Merge(3, 7.0)
-    islands.begin()
-    assert islands.merge is None
+        submaps.move(metres / CELL_M, 11.0)
+        assert submaps.last_merge is not None
+    submaps.move(2.0 / CELL_M, 11.0)
+    assert submaps.last_merge is None
+    submaps.last_merge = Merge(3, 7.0)
+    submaps.begin()
+    assert submaps.last_merge is None
 
 
 def test_a_long_loop_closes_and_odometry_is_not_to_blame() -> None:
@@ -491,8 +491,8 @@ def test_the_prior_is_what_odometry_can_have_drifted(off: float, drift: float) -
     assert map_.log_prior(0, here) == PRIOR
 
 
-def test_a_look_that_turns_the_robot_is_held_back() -> None:
-    """As near as it puts the robot: one whose heading is sure is not turned by a look-alike. 3.2 is the plain twin."""
+def test_an_observation_that_turns_the_robot_is_outside_the_validation_gate() -> None:
+    """As near as it puts the robot: one whose heading is sure is not turned by perceptual aliasing. 3.2 is the plain twin."""
     packet = Packet(32.0, 32.0, 0.0, 1.0)
     for gate_rad, held in ((3.2, False), (0.8, True)):
         map_ = ExperienceMap(SHAPE, CELL_M, ExperienceMapParams(sweeps=0), evidence=EvidenceParams(gate_rad=gate_rad))

@@ -1,4 +1,4 @@
-"""What the experience map learns of the ways between experiences: links, averages, the best look, and no way after a kidnap."""
+"""What the experience map learns of the ways between experiences: links, averages, the best observation, none after a kidnap."""
 
 from __future__ import annotations
 
@@ -112,7 +112,7 @@ def test_a_passage_counts_by_how_well_it_is_known() -> None:
         assert robot.map.transitions.weight[row] == pytest.approx(weights, rel=1e-6)
 
 
-def test_the_best_look_decides_the_transition() -> None:
+def test_the_best_observation_decides_the_transition() -> None:
     """A zone is entered at its rim, but the image matches best where the experience was made, so it is measured there."""
     params = ExperienceMapParams(anchor_sigma=0.05, odometry_drift=0.0, sweeps=0, solve_every=0, odometry_edges=False)
     robot = Robot(params)
@@ -127,7 +127,7 @@ def test_the_best_look_decides_the_transition() -> None:
     row = rows.index([0, 1])
     alone = robot.map.moves[row].copy()
     assert alone[0] == pytest.approx(2.0)
-    # again, with odometry that reads 10 % too much; the packet is off, so that the first look is wrong by 0.2 m
+    # again, with odometry that reads 10 % too much; the packet is off, so that the first observation is wrong by 0.2 m
     robot.go(1.76, 0.0, 1, difference=5.0, packet=robot.packet(Pose2(goal.x - 0.2, 0.0, 0.0)))
     rim = robot.map.moves[row].copy()
     weight = robot.map.transitions.weight[row]
@@ -148,7 +148,7 @@ def test_odometry_past_known_places_keeps_the_chain_rigid() -> None:
     robot.see(0, new=True)
     robot.go(1.0, 0.2, 1, new=True)
     first_new = robot.pose
-    robot.see(0, difference=5.0, packet=robot.packet(Pose2(0.0, 0.0, 0.0)))  # a look-alike
+    robot.see(0, difference=5.0, packet=robot.packet(Pose2(0.0, 0.0, 0.0)))  # perceptual aliasing
     robot.go(0.8, -0.1, 2, new=True)
     assert robot.map.links.tolist() == [[0, 1], [1, 0], [0, 2]]
     assert robot.map.link_count == len(robot.map.moves) == len(robot.map.link_times) == 3
@@ -159,9 +159,9 @@ def test_odometry_past_known_places_keeps_the_chain_rigid() -> None:
     assert robot.map.transitions.weight[3] == pytest.approx(1e-4 / (1e-4 + (0.03 * 0.8) ** 2))
 
 
-def test_no_look_is_averaged_into_the_backbone() -> None:
+def test_no_observation_is_averaged_into_the_backbone() -> None:
     """The way to a place that was made straight after another is odometry, and stays so. Later passages count for its
-    time alone, and a way that begins with a look ties nothing rigidly."""
+    time alone, and a way that begins with an observation ties nothing rigidly."""
     robot = Robot(ExperienceMapParams(odometry_drift=0.03, sweeps=0, solve_every=0))
     robot.see(0, new=True)
     start = robot.packet()
@@ -175,7 +175,7 @@ def test_no_look_is_averaged_into_the_backbone() -> None:
     assert t.passages[0] == 2
     assert t.move[0].tolist() == backbone.tolist()
     assert t.weight[0] == weight
-    robot.go(0.5, 0.0, 2, new=True)  # from a look at 1, which was made last
+    robot.go(0.5, 0.0, 2, new=True)  # from an observation of 1, which was made last
     ends = t.ends[: t.count].tolist()
     assert ends == [[0, 1], [1, 0], [1, 2], [1, 2]]
     assert t.chain[: t.count].tolist() == [True, False, False, True]
@@ -245,7 +245,7 @@ def test_no_link_is_quicker_than_the_robot() -> None:
     assert robot.map.link_times[1] == pytest.approx(2.0)
 
 
-def test_what_is_deleted_elsewhere_does_not_keep_a_better_look_from_measuring() -> None:
+def test_what_is_deleted_elsewhere_does_not_keep_a_better_observation_from_measuring() -> None:
     robot = Robot(replace(EXACT, anchor_sigma=0.05, odometry_edges=False))
     robot.see(0, new=True)
     here = robot.packet()

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from ratslam_core import Odometry, Packet, Pose2, RatSlam, RatSlamParams, Recognition
 from ratslam_core.experience_map.experience_map import ExperienceMap
 from ratslam_core.extensions import familiar_ground
-from ratslam_core.extensions.familiar_ground import ENOUGH, LINKS, SIGHTS, FamiliarGround, NewGround
+from ratslam_core.extensions.familiar_ground import ENOUGH, LINKS, OBSERVATIONS, FamiliarGround, NewGround
 from ratslam_core.laws import check
 
 from .drives import CELL_M, EXACT, SHAPE, start
@@ -26,14 +26,14 @@ KNOWN = Recognition(0, False, 0, 0.0, 0.0)
 class Visitor:
     """A robot that hardly moves, at a place with one experience of view 0."""
 
-    def __init__(self, sights: int = 0, *, plain: bool = False) -> None:
+    def __init__(self, observations: int = 0, *, plain: bool = False) -> None:
         """It has recognised the place so many times."""
         self.ground = FamiliarGround()
         ground = NewGround() if plain else self.ground
         self.map = ExperienceMap(SHAPE, CELL_M, replace(EXACT, odometry_drift=0.03), ground=ground)
         self.views = 0
         self.look(Recognition(0, True, -1, math.inf, 0.0))
-        for _ in range(sights):
+        for _ in range(observations):
             self.look(KNOWN)
 
     def look(self, seen: Recognition, odometry: Odometry = CRAWL, *, x: float = 32.0, lost: bool = False) -> bool:
@@ -50,22 +50,22 @@ class Visitor:
 
 
 def test_a_place_becomes_familiar_when_it_is_recognised() -> None:
-    """Sights of a robot that stands still do not count."""
-    visitor, kept = Visitor(), 1 - 1 / SIGHTS
+    """Observations of a robot that stands still do not count."""
+    visitor, kept = Visitor(), 1 - 1 / OBSERVATIONS
     for _ in range(200):
         visitor.look(KNOWN, STILL)
     assert (visitor.ground.share[0], visitor.ground.familiar) == (0.0, False)
-    needed = math.ceil(math.log(1 - ENOUGH) / math.log(kept))  # the share after k sights is 1 - kept^k
-    for sight in range(1, needed + 3):
+    needed = math.ceil(math.log(1 - ENOUGH) / math.log(kept))  # the share after k observations is 1 - kept^k
+    for seen in range(1, needed + 3):
         visitor.look(KNOWN)
-        assert visitor.ground.share[0] == pytest.approx(1 - kept**sight)
-        assert visitor.ground.familiar is (sight >= needed)
+        assert visitor.ground.share[0] == pytest.approx(1 - kept**seen)
+        assert visitor.ground.familiar is (seen >= needed)
 
 
-def test_on_familiar_ground_an_unknown_sight_is_let_go() -> None:
+def test_on_familiar_ground_an_unknown_observation_is_let_go() -> None:
     visitor = Visitor(100)
     assert not visitor.unknown()
-    assert (len(visitor.map), visitor.map.active, visitor.ground.spared) == (1, 0, 1)
+    assert (len(visitor.map), visitor.map.active, visitor.ground.pruned) == (1, 0, 1)
     assert visitor.map.robot.x == pytest.approx(101 * 1e-4)  # odometry goes on
 
 
@@ -126,19 +126,19 @@ def test_no_place_gets_links_without_end(steps: list[tuple[int, int]]) -> None:
     assert map_.link_count <= chain + 10 * LINKS
 
 
-def test_where_half_of_the_sights_are_recognised_memory_stops_growing() -> None:
-    """As in an office at a fine grain: every other sight is a little unlike all views. The twin keeps them all."""
+def test_where_half_of_the_observations_are_recognised_memory_stops_growing() -> None:
+    """As in an office at a fine grain: every other observation is a little unlike all views. The twin keeps them all."""
     visitor, twin = Visitor(), Visitor(plain=True)
     sizes = []
-    for sight in range(400):
+    for seen in range(400):
         for robot in (visitor, twin):
-            robot.look(KNOWN) if sight % 2 else robot.unknown()
+            robot.look(KNOWN) if seen % 2 else robot.unknown()
         sizes.append((len(visitor.map), len(twin.map)))
     assert sizes[-1][0] == sizes[99][0] < 60
     assert sizes[-1][1] == 201
 
 
-def test_without_an_experience_map_every_sight_is_learnt() -> None:
+def test_without_an_experience_map_every_observation_is_learnt() -> None:
     params = RatSlamParams()
     brain = RatSlam(replace(params, experience_map=replace(params.experience_map, enabled=False)))
     assert isinstance(brain.experience_map.ground, NewGround)
@@ -148,9 +148,9 @@ def test_without_an_experience_map_every_sight_is_learnt() -> None:
 
 
 def test_a_place_has_room_for_so_many_views_and_the_oldest_fades(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A place that looks different at every sight: of its four views the one longest not recognised makes room."""
+    """A place that looks different at every observation: of its four views the one longest not recognised makes room."""
     monkeypatch.setattr(familiar_ground, "VIEWS", 4)
-    monkeypatch.setattr(familiar_ground, "SIGHTS", 1000)
+    monkeypatch.setattr(familiar_ground, "OBSERVATIONS", 1000)
     visitor = Visitor()
     for _ in range(3):
         visitor.unknown()

@@ -53,7 +53,7 @@ def test_light_is_mostly_taken_off() -> None:
         assert taken < 0.5 * left
 
 
-def test_sonars_tell_look_alikes_apart() -> None:
+def test_sonars_tell_aliased_places_apart() -> None:
     """Without them the picture alone counts. They change no image: the kidnap detector counts them by itself."""
     local_view = view_of(KIND)
     assert local_view.observe(office(1), None, NEAR).view == 0

@@ -64,7 +64,7 @@ def test_a_changed_place_does_not_keep_the_robot_lost() -> None:
     assert circle.miss_m(estimate) < 0.3
 
 
-def test_sights_that_contradict_each_other_find_nobody_again() -> None:
+def test_observations_that_contradict_each_other_find_nobody_again() -> None:
     circle, brain = start()
     circle.advance(brain, 2 * LAP)
     brain.declare_kidnapped()
@@ -158,7 +158,7 @@ def test_a_change_is_a_jump_only_above_its_limits() -> None:
 
 
 def test_it_is_found_again_just_when_it_was_seen_often_enough(monkeypatch: pytest.MonkeyPatch) -> None:
-    """After enough sights of experiences from before the kidnap, of which there were seven, or twelve steps."""
+    """After enough observations of experiences from before the kidnap, of which there were seven, or twelve steps."""
     monkeypatch.setattr(kidnap_detector, "SETTLED", 12)
     for known, steps in ((-1, 12), (0, FOUND_AGAIN), (6, FOUND_AGAIN), (7, 12)):
         detector = KidnapDetector(KidnapParams())

@@ -66,7 +66,7 @@ def test_a_deleted_link_comes_back_when_driven_again() -> None:
     assert len(robot.map.dropped_links) == 2
 
 
-def test_a_deleted_look_leaves_its_row_to_the_next() -> None:
+def test_a_deleted_observation_leaves_its_row_to_the_next() -> None:
     robot = two_places(EXACT)
     robot.see(0)
     t, rows = robot.map.transitions, robot.map.transitions.count
@@ -97,7 +97,7 @@ def test_what_was_deleted_is_measured_no_more() -> None:
 @settings(max_examples=30)
 @given(st.lists(st.tuples(st.integers(0, 11), st.integers(0, 11)), max_size=20))
 def test_whatever_is_deleted_the_map_stays_in_one_piece(doubted: list[tuple[int, int]]) -> None:
-    """Odometry between successive experiences still holds them together; only looks at known places lose their weight."""
+    """Odometry between successive experiences still holds them together; only observations of known places lose their weight."""
     params = ExperienceMapParams(solve_every=1)
     robot = Robot(params)
     robot.see(0, new=True)

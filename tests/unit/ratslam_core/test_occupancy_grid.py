@@ -67,7 +67,7 @@ def test_sonars_look_where_they_are_mounted() -> None:
         assert np.abs(there.probability - np.roll(grid.probability, (dy, dx), (0, 1))).max() < 1e-5
 
 
-def test_many_looks_are_sure_within_bounds_and_can_be_taken_back() -> None:
+def test_many_observations_are_sure_within_bounds_and_can_be_taken_back() -> None:
     grid = OccupancyGrid(SHAPE, CELL_M, [0.0])
     assert np.array_equal(grid.probability, np.full((64, 64), 0.5, np.float32))
     packet, wall, gone = Packet(30.0, 30.0, 0.0, 1.0), np.array([2.0]), np.array([4.0])

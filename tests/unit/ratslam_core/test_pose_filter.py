@@ -24,17 +24,21 @@ sigmas = st.floats(0.001, 0.9)
 
 
 @given(near, sigmas, sigmas)
-def test_a_look_and_odometry_are_weighed_by_their_variances(look: Pose2, own: float, sigma: float) -> None:
+def test_an_observation_and_odometry_are_weighed_by_their_variances(
+    observation: Pose2, own: float, sigma: float
+) -> None:
     belief = believing(Pose2(0.0, 0.0, 0.0), own)
-    belief.see(look, sigma)
+    belief.see(observation, sigma)
     own = max(own, LEAST_SIGMA * CELL_M)
     share = (1 / sigma**2) / (1 / sigma**2 + 1 / own**2)
     seen = belief.local.x, belief.local.y, belief.local.heading_rad
-    assert seen == pytest.approx((share * look.x, share * look.y, share * look.heading_rad), abs=1e-9)
+    assert seen == pytest.approx(
+        (share * observation.x, share * observation.y, share * observation.heading_rad), abs=1e-9
+    )
     assert 1 / belief.sigma_m**2 == pytest.approx(1 / sigma**2 + 1 / own**2, rel=1e-6)
 
 
-def test_a_doubtful_look_moves_the_belief_little() -> None:
+def test_an_uncertain_observation_moves_the_estimate_little() -> None:
     moved = []
     for sigma in (0.02, 0.1, 0.3, 1.0):
         belief = believing(Pose2(0.0, 0.0, 0.0), 0.1)
@@ -46,9 +50,9 @@ def test_a_doubtful_look_moves_the_belief_little() -> None:
     assert moved[-1] < 0.01
 
 
-def test_a_look_that_disagrees_altogether_is_believed_at_once() -> None:
+def test_an_observation_that_disagrees_altogether_is_believed_at_once() -> None:
     """Farther or more turned than the limits; as far and as turned is weighed. So is one that is perfect."""
-    for look, snaps in (
+    for observation, snaps in (
         (Pose2(SNAP * CELL_M + 0.01, 0.0, 0.0), True),
         (Pose2(0.0, -1.5, 0.0), True),
         (Pose2(0.0, 0.0, -SNAP_RAD - 0.01), True),
@@ -56,8 +60,8 @@ def test_a_look_that_disagrees_altogether_is_believed_at_once() -> None:
         (Pose2(0.0, 0.0, SNAP_RAD), False),
     ):
         belief = believing(Pose2(0.0, 0.0, 0.0), 0.05)
-        assert belief.see(look, 0.4) is not snaps
-        assert (belief.local == look) is (belief.sigma_m == 0.4) is snaps
+        assert belief.see(observation, 0.4) is not snaps
+        assert (belief.local == observation) is (belief.sigma_m == 0.4) is snaps
     belief = believing(Pose2(0.1, 0.2, 0.3), 0.2)
     belief.see(Pose2(0.0, 0.0, 0.0), 0.0)
     assert (belief.local, belief.sigma_m) == (Pose2(0.0, 0.0, 0.0), 0.0)
@@ -92,14 +96,14 @@ def test_who_was_carried_may_be_anywhere_until_it_sees_something_or_begins_a_map
 
 
 @given(near, near)
-def test_a_look_without_a_sigma_is_where_the_robot_is(before: Pose2, look: Pose2) -> None:
+def test_an_observation_without_a_sigma_is_where_the_robot_is(before: Pose2, observation: Pose2) -> None:
     """As in the papers: where it was seen last, and where the wheels brought it since."""
     belief = PoseFilter(CELL_M)
     belief.move(before, 0.0)
-    belief.see(look, 0.0)
+    belief.see(observation, 0.0)
     at = belief.local
-    assert (at.x, at.y) == pytest.approx((look.x, look.y), abs=1e-9)
-    assert wrap_angle(at.heading_rad - look.heading_rad) == pytest.approx(0.0, abs=1e-9)
+    assert (at.x, at.y) == pytest.approx((observation.x, observation.y), abs=1e-9)
+    assert wrap_angle(at.heading_rad - observation.heading_rad) == pytest.approx(0.0, abs=1e-9)
     belief.move(Pose2(0.2, 0.0, 0.1), 0.0)
     assert belief.local == at.compose(Pose2(0.2, 0.0, 0.1))
     assert belief.sigma_m == 0.0

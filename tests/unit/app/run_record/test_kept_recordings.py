@@ -54,8 +54,7 @@ def copy(drive: Path, tmp_path: Path) -> Path:
 @pytest.fixture(autouse=True)
 def _runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("RATSLAM_RUNS", str(tmp_path / "runs"))
-    for module in ("runs", "export"):
-        monkeypatch.setattr(f"app.cli.{module}.compile_first", lambda: None)
+    monkeypatch.setattr("app.cli.runs.compile_first", lambda: None)
 
 
 def playing(path: Path, ticks: int, *, again: bool = True) -> Keeping:

@@ -1,4 +1,4 @@
-"""The backbone is torn where no closure bridges it."""
+"""An odometry constraint may be broken where no loop closure bridges it."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from ratslam_core import Pose2
-from ratslam_core.extensions.odometry_edges import open_way_m, soften, torn
+from ratslam_core.extensions.odometry_edges import broken, inflate_covariance, open_way_m
 from ratslam_core.pose_graph.transitions import Transitions
 
 
@@ -37,19 +37,19 @@ def test_an_unnoticed_kidnap_is_found_in_the_backbone(subtests: pytest.Subtests)
         ([(9, 0)], 0, 9, []),
     ):
         with subtests.test(closures=closures, first=first):
-            assert torn(a_backbone(10, closures), first, last).tolist() == found
+            assert broken(a_backbone(10, closures), first, last).tolist() == found
     for closures, first, last, way_m in (
         ([], 0, 9, 9.0), ([], 3, 6, 3.0), ([(5, 0)], 0, 9, 4.0), ([(4, 2), (8, 6)], 0, 9, 5.0), ([(9, 0)], 0, 9, 0.0)
     ):  # fmt: skip
         assert open_way_m(a_backbone(10, closures), first, last) == pytest.approx(way_m)
     t = a_backbone(10, [(9, 0)])
     t.believed[9] = 0.0  # a closure that is not believed bridges nothing
-    assert torn(t, 0, 9).tolist() == [*range(9)]
+    assert broken(t, 0, 9).tolist() == [*range(9)]
 
 
-def test_the_torn_rows_are_together_as_uncertain_as_they_were_wrong() -> None:
+def test_the_broken_rows_are_together_as_uncertain_as_they_were_wrong() -> None:
     t, sigma, off_m = a_backbone(10, [(5, 0)]), 0.01, 3.0
-    rows = soften(t, 0, 9, off_m, sigma)
+    rows = inflate_covariance(t, 0, 9, off_m, sigma)
     added = sum(sigma**2 / t.weight[row] - sigma**2 for row in rows)
     assert math.sqrt(added) == pytest.approx(off_m)
     assert (t.believed[rows] == t.weight[rows]).all()

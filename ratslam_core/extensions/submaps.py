@@ -1,13 +1,13 @@
 """[ours] A robot that was carried away maps a submap, until the evidence says where it belongs.
 
-While the robot does not know where it is, a single look that is believed would tie what it sees now to a place where it
-is not, and bend both. On a submap it maps what is there. Where the evidence is strong enough (`evidence.py`), the younger
-submap is moved as a whole, and a closure ties the two. test_evidence.py::{
+While the robot does not know where it is, a single false loop closure would tie what it sees now to a place where it is
+not, and bend both. On a submap it maps what is there. Where the evidence is strong enough (`evidence.py`), the younger
+submap is moved as a whole, and a loop closure ties the two. test_evidence.py::{
 test_what_is_believed_changes_no_map_and_a_submap_is_merged_as_a_whole,test_the_younger_submap_becomes_part_of_the_older}.
 A merge may be wrong, in a twin of the right place. So it is remembered which experiences came with it and how sure it was,
 until the robot has driven on for long; when evidence proves that it is elsewhere, all that tied them to the older map goes,
 and they are moved there instead. test_evidence.py::test_a_merge_that_proves_wrong_is_undone.
-With `experience_map.islands` off there is one map, as in the papers, and a robot that is lost believes every look.
+With `experience_map.submaps` off there is one map, as in the papers, and a robot that is lost believes every observation.
 """
 
 from __future__ import annotations
@@ -33,48 +33,50 @@ class Merge:
     log_odds: float  # that it was right
 
 
-@kind("islands/3")
-class Islands:
-    """The island that the robot is on. Islands have numbers, 0 for the first; `Experiences.island` says which lies where."""
+@kind("submaps/1")
+class Submaps:
+    """The submap that the robot is on. Submaps have numbers, 0 for the first; `Experiences.submap` says which lies where."""
 
     def __init__(self) -> None:
         self.current = 0
         self.begun = 0  # how many were begun after the first
-        self.joined = 0  # how many of them were joined with another
-        self.merge: Merge | None = None  # the last one, as long as it may be undone
+        self.merged = 0  # how many of them were merged with another
+        self.last_merge: Merge | None = None  # the last one, as long as it may be undone
 
     def begin(self) -> None:
-        """The robot was carried away: what it makes from now on lies on a new island."""
+        """The robot was carried away: what it makes from now on lies on a new submap."""
         self.begun += 1
-        self.current, self.merge = self.begun, None
+        self.current, self.last_merge = self.begun, None
 
     def move(self, cells: float, most: float) -> None:
         """The robot drove on. most: log odds of a merge above which it need no longer be undone."""
-        if self.merge is not None:
-            self.merge.log_odds += SURER * cells
-            if self.merge.log_odds >= most:
-                self.merge = None
+        if self.last_merge is not None:
+            self.last_merge.log_odds += SURER * cells
+            if self.last_merge.log_odds >= most:
+                self.last_merge = None
 
-    def join(
-        self, other: int, islands: NDArray[np.int32], poses: NDArray[np.float64], robot: Pose2, claimed: Pose2
+    def merge(
+        self, other: int, submaps: NDArray[np.int32], poses: NDArray[np.float64], robot: Pose2, claimed: Pose2
     ) -> None:
-        """The robot, which is at `robot` on the current island, is at `claimed` on the other. The younger one moves, and becomes
+        """The robot, which is at `robot` on the current submap, is at `claimed` on the other. The younger one moves, and becomes
         part of the older.
 
-        islands: of each experience, (n,); poses: of each, (n, 3). Both are changed in place.
+        submaps: of each experience, (n,); poses: of each, (n, 3). Both are changed in place.
         """
         younger, older = max(self.current, other), min(self.current, other)
-        moved = islands == younger
+        moved = submaps == younger
         move(np.flatnonzero(moved), poses, *((robot, claimed) if self.current == younger else (claimed, robot)))
-        islands[moved] = self.current = older
-        self.joined += 1
+        submaps[moved] = self.current = older
+        self.merged += 1
 
     def undo(self, t: Transitions, poses: NDArray[np.float64], robot: Pose2, claimed: Pose2) -> None:
         """The last merge was wrong: the robot is at `claimed`, not at `robot`, and so is all that came with it."""
-        assert self.merge is not None
+        assert self.last_merge is not None
         ends = t.ends[: t.count]
-        t.let_go(np.flatnonzero((ends < self.merge.first).any(axis=1) & (ends >= self.merge.first).any(axis=1)))
-        move(np.arange(self.merge.first, len(poses)), poses, robot, claimed)
+        t.let_go(
+            np.flatnonzero((ends < self.last_merge.first).any(axis=1) & (ends >= self.last_merge.first).any(axis=1))
+        )
+        move(np.arange(self.last_merge.first, len(poses)), poses, robot, claimed)
 
 
 def move(which: NDArray[np.intp], poses: NDArray[np.float64], robot: Pose2, claimed: Pose2) -> None:
