@@ -95,7 +95,7 @@ class LogFile:
 
     def __init__(self, folder: Path, size: int = 0, check: int = 0) -> None:
         """size, check: of the whole lines of a run that goes on. ValueError: another program is doing that."""
-        folder.mkdir(parents=True, exist_ok=size > 0)
+        folder.mkdir(parents=True, exist_ok=True)
         self._path = folder / LINES
         self._file: IO[bytes] = self._path.open("r+b" if size else "xb", buffering=0)
         self._size, self._check, self._waiting = size, check, b""

@@ -13,7 +13,6 @@ import time
 from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import partial
 from itertools import count
 from pathlib import Path
 
@@ -157,34 +156,34 @@ class LogWriter:
         self._folder = runs_folder()
         beginning = _forked(feed.beginning) if isinstance(feed.beginning, Fork) else feed.beginning
         if isinstance(beginning, KeptRun):
-            first_line = self._go_on(beginning)
+            self._go_on(beginning)
         else:
-            first_line = self._begin_anew(beginning)
+            self._begin_anew(beginning)
         assert self._file is not None
         feed.folder = self._folder
         if self._file.without_locks:
             self._complain(f"{self._folder.parent} has no file locks: the run is kept there, but do not go on with it in two "
                            "programs at once; RATSLAM_RUNS names another folder")  # fmt: skip
         self._states = States(self._folder, self._hashed, self._complain)
-        self._try(first_line)
 
-    def _go_on(self, kept: KeptRun) -> Callable[[], object]:
-        """Returns what writes the first line."""
+    def _go_on(self, kept: KeptRun) -> None:
         version = code_version()
         self._folder, rows = kept.folder, kept.rows
         self._file = LogFile(self._folder, kept.size, kept.check)
         self._log = RunLog(self._file, rows.world, kept.tick, len(rows.orders), rows.edited_bytes)
-        return partial(self._log.again, version)
+        self._try(self._log.again, version)
 
-    def _begin_anew(self, beginning: Beginning) -> Callable[[], object]:
+    def _begin_anew(self, beginning: Beginning) -> None:
+        """The file comes last, and its first line with it: whoever finds it finds a run."""
         header = header_of(beginning)  # takes its time: who is killed before leaves nothing, not a file of nothing
         self._folder = new_folder()
-        self._file = LogFile(self._folder)
-        self._log = RunLog(self._file, beginning.world)
+        self._folder.mkdir(parents=True)
         if beginning.brain is not None:
             with whole_file(self._folder / BRAIN) as file:
                 write_state(encode(beginning.brain), file)
-        return partial(self._file.add, written(header))
+        self._file = LogFile(self._folder)
+        self._log = RunLog(self._file, beginning.world)
+        self._try(self._file.add, written(header))
 
     # ------------------------------------------------------------ the entries
 
