@@ -115,10 +115,11 @@ def check_drawing(experiment: Experiment) -> None:
 
 def _made_up(experiment: Experiment) -> list[StoredTrial]:
     """Two trials in each cell, which have all scores."""
-    names = {str(name) for score in experiment.scores for name in (score.score, *(score.rate or ())) if name}
     cells = [tuple(level.label for level in cell) for cell in experiment.cells()]
     keys = [(engine, levels, seed) for seed in (1, 2) for engine in experiment.engines for levels in cells]
     return [
-        StoredTrial(f"{number:016x}", engine, levels, seed, dict.fromkeys(names, float(seed)), 1.0, "made up")
+        StoredTrial(
+            f"{number:016x}", engine, levels, seed, dict.fromkeys(experiment.readings, float(seed)), 1.0, "made up"
+        )
         for number, (engine, levels, seed) in enumerate(keys)
     ]

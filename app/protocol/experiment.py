@@ -70,6 +70,11 @@ class Score(Part):
             raise ValueError(f"score {self.label!r}: give either score = NAME or rate = [HOW MANY, OF HOW MANY]")
         return self
 
+    @property
+    def readings(self) -> tuple[str, ...]:
+        """By their names (measures.py)."""
+        return (str(self.score),) if self.rate is None else self.rate
+
 
 class Original(Part):
     """What the paper found, to be drawn beside ours: the value of a score at these levels."""
@@ -147,7 +152,7 @@ class Experiment(Part):
     @property
     def readings(self) -> list[str]:
         """That its scores are, or are rates of."""
-        return [str(name) for each in self.scores for name in ((each.score,) if each.rate is None else each.rate)]
+        return [name for score in self.scores for name in score.readings]
 
     def _check_scores(self) -> None:
         visits = sum(step.count_visits() for step in self.protocol)
@@ -158,12 +163,12 @@ class Experiment(Part):
             Waited: ("conditions", 0),
         }
         for score in self.scores:
-            for name in (score.score,) if score.rate is None else score.rate:
+            for name in score.readings:
                 try:
-                    what, count = most.get(measure_of(str(name)), ("", 1))
+                    what, count = most.get(measure_of(name), ("", 1))
                 except ValueError as error:
                     raise ValueError(f"score {score.label!r}: {error}") from None
-                if count < (number_in(str(name)) or 1):
+                if count < (number_in(name) or 1):
                     raise ValueError(f"score {score.label!r}: {name!r} is of {what}; the protocol has {count}")
 
     def _check_watch(self) -> None:

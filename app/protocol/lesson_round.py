@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from app.protocol.conditions import Waiting
-from app.protocol.course import Course
+from app.protocol.course import Course, run_ticks
 from app.protocol.lesson import Lesson, Measured, Plate, fill_in
 from app.protocol.marks import Marks
 from app.protocol.measures import Measuring, reading_of
@@ -184,10 +184,11 @@ def show_to_end(round_: LessonRound) -> LessonRound:
 
 
 def _run_until(round_: LessonRound, phase: Phase) -> None:
-    while round_.phase != phase:
-        round_.session.tick()
-        round_.history.watch()
-        round_.advance()
+    def ticks() -> Iterator[str]:
+        while round_.phase != phase:
+            yield round_.doing
+
+    run_ticks(round_.course, ticks(), [round_.history.watch, round_.advance])
 
 
 def measured_in(rounds: Sequence[LessonRound]) -> list[tuple[str, Measured]]:

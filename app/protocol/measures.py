@@ -11,6 +11,7 @@ import difflib
 import math
 import re
 import statistics
+from abc import ABC, abstractmethod
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from itertools import takewhile
@@ -82,7 +83,7 @@ class Subject:
         return self.session.companion
 
 
-class Measure:
+class Measure(ABC):
     """readings: by name; "N" in a name stands for a number, from 1. always: every trial has it. of_any_brain: it can be
     measured of a second brain, too. costly: measured only where a reading of it is asked for."""
 
@@ -95,11 +96,11 @@ class Measure:
     def __init__(self, subject: Subject) -> None:
         self.subject, self.course, self.session = subject, subject.course, subject.session
 
-    def note(self) -> None:
+    def note(self) -> None:  # noqa: B027 - most look at the end only
         """After each tick."""
 
-    def values(self) -> dict[str, float]:
-        raise NotImplementedError
+    @abstractmethod
+    def values(self) -> dict[str, float]: ...
 
 
 # ------------------------------------------------------------ the run, the map, what was learnt

@@ -305,7 +305,8 @@ class Visit(StepBase):
 
 
 class Tour(StepBase):
-    """The robot is sent to places spread over its map, `visits` times in all; in every round to each, in a new order.
+    """The robot is sent to places spread over its map, which are tagged `goal 1`, `goal 2` ..., `visits` times in all; in every
+    round to each, in a new order.
 
     It has come to a place if it says so and truly is within `near_m` of where it had made that experience.
     """
@@ -315,6 +316,9 @@ class Tour(StepBase):
     visits: Annotated[int, Field(ge=1, le=1_000_000)]
     timeout_s: Seconds = 180.0
     near_m: Metres = 1.0
+
+    def gives_tags(self) -> Sequence[str]:
+        return [f"goal {number}" for number in range(1, self.goals + 1)]
 
     def count_visits(self) -> int:
         return self.visits
@@ -334,9 +338,9 @@ class Tour(StepBase):
             raise ValueError(
                 f"goals = {self.goals}, but the robot knows only {len(goals)} places; let it explore longer"
             )
-        for number, goal in enumerate(goals, start=1):
-            course.tag(f"goal {number}", session.evaluation.made_at(goal, map_), experience=goal)
-        tags = [course.tags[f"goal {number}"] for number in range(1, self.goals + 1)]
+        for name, goal in zip(self.gives_tags(), goals, strict=True):
+            course.tag(name, session.evaluation.made_at(goal, map_), experience=goal)
+        tags = [course.tags[name] for name in self.gives_tags()]
         for number, goal in enumerate(order(self.goals, self.visits, session.seed), start=1):
             tag, name = tags[goal], f"visit {number} of {self.visits}"
             yield from course.go(name, tag.experience, (tag.x, tag.y), self.timeout_s, self.near_m)

@@ -177,11 +177,15 @@ class LogWriter:
         """The file comes last, and its first line with it: whoever finds it finds a run."""
         header = header_of(beginning)  # takes its time: who is killed before leaves nothing, not a file of nothing
         self._folder = new_folder()
-        self._folder.mkdir(parents=True)
-        if beginning.brain is not None:
-            with whole_file(self._folder / BRAIN) as file:
-                write_state(encode(beginning.brain), file)
-        self._file = LogFile(self._folder)
+        try:
+            self._folder.mkdir(parents=True)
+            if beginning.brain is not None:
+                with whole_file(self._folder / BRAIN) as file:
+                    write_state(encode(beginning.brain), file)
+            self._file = LogFile(self._folder)
+        except (OSError, ValueError):
+            shutil.rmtree(self._folder, ignore_errors=True)  # without its file nobody would find it, to delete it
+            raise
         self._log = RunLog(self._file, beginning.world)
         self._try(self._file.add, written(header))
 
@@ -252,6 +256,9 @@ def copy_until(run: KeptRun, tick: int, folder: Path) -> KeptRun:
     """
     if not 0 <= tick <= run.tick:
         raise ValueError(f"the run {run.name} is known up to tick {run.tick}, not {tick}")
+    folder.mkdir(parents=True)
+    if run.header.brain:
+        shutil.copyfile(run.folder / BRAIN, folder / BRAIN)
     file = LogFile(folder)
     try:
         file.add(written(replace(run.header, made_at=time.time())))
@@ -265,8 +272,6 @@ def copy_until(run: KeptRun, tick: int, folder: Path) -> KeptRun:
         log.flush()
     finally:
         file.close()
-    if run.header.brain:
-        shutil.copyfile(run.folder / BRAIN, folder / BRAIN)
     return open_run(folder)
 
 
