@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from ratslam_core import ExperienceMapParams, LocalViewParams, Odometry, PoseCellParams, RatSlam, RatSlamParams, laws
-from ratslam_core.slam import SNAP_CELLS
+from ratslam_core.localisation import SNAP_CELLS
 from tests.unit.ratslam_core.drives import LAP, SONARS, Circle, start
 
 

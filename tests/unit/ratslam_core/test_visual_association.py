@@ -20,7 +20,7 @@ from ratslam_core import (
 )
 from ratslam_core.beats import Tick
 from ratslam_core.local_view.view_links import VisualAssociation
-from ratslam_core.slam import Localisation
+from ratslam_core.localisation import Localisation
 from tests.unit.ratslam_core import literal
 from tests.unit.ratslam_core.drives import LAP, RADIUS_M, STEP_RAD, start
 
