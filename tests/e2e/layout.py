@@ -9,8 +9,7 @@ from playwright.sync_api import Page
 from tests.e2e.browser import calm
 
 # Each of these stands alone; what lies in one of them may not cover its neighbours there either.
-PARTS = """header, footer, .views, .aids, .hints, #panel, #panel-show, #beside, #lesson, #trial, #first, #situation, #film,
-    #walk, #kept, #presenter-bar, .pad, .toast"""
+PARTS = """header, footer, #stage, #line, .views, .aids, #panel, #panel-show, #beside, #lesson, #presenter-bar, .pad"""
 BOXES = """([parts, least]) => {
     const wrong = [], name = (part) => part.id || part.className || part.tagName;
     const shown = (part) => part.checkVisibility({ visibilityProperty: true }) && part.getBoundingClientRect().width > 0;
@@ -27,7 +26,7 @@ BOXES = """([parts, least]) => {
         if (box.left < -0.5 || box.right > innerWidth + 0.5 || box.top < -0.5 || box.bottom > bottom + 0.5)
             wrong.push(`${name(part)} sticks out`);
         for (const other of all.slice(k + 1)) {
-            const sheet = part.id === "panel" && innerWidth <= 1000 || other.id === "panel" && innerWidth <= 1000;
+            const sheet = [part.id, other.id].some((id) => id === "panel" && innerWidth <= 1000 || id === "lesson" && innerWidth <= 760);
             if (!sheet && !part.contains(other) && !other.contains(part) && !apart(box, other.getBoundingClientRect()))
                 wrong.push(`${name(part)} and ${name(other)} cover one another`);
         }
@@ -65,6 +64,24 @@ BOXES = """([parts, least]) => {
             wrong.push(`${name(part)} is beneath ${name(at)}`);
     }
     return wrong; }"""
+# A control counts when its middle is what a click there would meet; a word when its own text box is in the window.
+IN_SIGHT = """() => {
+  const seen = (part, rect) => rect.width > 1 && rect.height > 1 && rect.bottom > 0 && rect.right > 0 && rect.top < innerHeight
+    && rect.left < innerWidth && part.checkVisibility({ opacityProperty: true, visibilityProperty: true });
+  const on_top = (part, rect) => { const hit = document.elementFromPoint(rect.left + rect.width / 2, rect.top + rect.height / 2);
+    return hit !== null && (part.contains(hit) || hit.contains(part)); };
+  const controls = [...document.querySelectorAll("button, select, input, summary, a[href], textarea, [role=slider], [role=tab]")]
+    .filter((part) => { const rect = part.getBoundingClientRect(); return seen(part, rect) && on_top(part, rect); });
+  const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
+  let words = 0;
+  while (walker.nextNode()) {
+    const part = walker.currentNode.parentElement, text = walker.currentNode.textContent.trim();
+    if (!text || part.closest(".gone, script, style, select, svg") || part.closest("dialog:not([open])")) continue;
+    const range = document.createRange(); range.selectNodeContents(walker.currentNode);
+    if (seen(part, range.getBoundingClientRect())) words += text.split(/\\s+/).length;
+  }
+  return [controls.map((part) => part.id || part.getAttribute("aria-label") || part.textContent.trim()), words];
+}"""
 FOR_FINGERS = """() => [...document.querySelectorAll("button, select, summary, [role=tab], label.check, .pop a, .option")]
     .filter((part) => part.checkVisibility({ visibilityProperty: true }) && !part.closest(".gone"))
     .map((part) => [part, part.getBoundingClientRect()])
@@ -73,7 +90,7 @@ FOR_FINGERS = """() => [...document.querySelectorAll("button, select, summary, [
     .map(([part, { width, height }]) => `${part.id || part.textContent || part.ariaLabel}: ${width} x ${height}`)"""
 CONTROLS = """() => [...document.querySelectorAll("button, select, summary")]
     .filter((part) => part.checkVisibility() && !part.closest(".toast")) // which comes and goes; Escape takes it away
-    .filter((part) => part.tabIndex >= 0) // the other tabs of the panel: arrows reach them
+    .filter((part) => part.tabIndex >= 0 && !part.disabled) // the other tabs of the panel: arrows reach them
     .map((part) => part.id || part.getAttribute("aria-label") || part.textContent)"""
 FOCUSED = """() => { const part = document.activeElement;
     return part.id || part.getAttribute("aria-label") || part.textContent; }"""

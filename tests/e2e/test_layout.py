@@ -301,6 +301,7 @@ def test_axe_finds_nothing_on_the_second_screen_in_the_documents_and_before_the_
             assert {part.get_attribute("id") for part in page.locator(steers).all()} <= looks, size
     with browser.new_context(viewport={"width": 1440, "height": 900}) as context:
         context.set_default_timeout(PATIENCE_MS)
+        context.add_init_script("localStorage.level = 'lab'")
         page = context.new_page()
         page.goto(f"{program.url}docs")
         page.wait_for_selector("#commands article")

@@ -1,4 +1,4 @@
-"""What the page says by itself: toasts that cover nothing, and the marks on the timeline."""
+"""What the page says by itself: in the line beneath the stage, one thing at a time, and by the marks on the timeline."""
 
 from __future__ import annotations
 
@@ -6,24 +6,16 @@ from dataclasses import replace
 from typing import get_args
 
 import pytest
-from playwright.sync_api import Page
+from playwright.sync_api import Page, expect
 
-from tests.e2e.browser import box_of, on_screen, open_page, until
+from tests.e2e.browser import box_of, open_page, until
 from tests.e2e.fake_engine import FakeEngine
-from tests.e2e.program import Program
 from web.messages import EventKind
-from web.viewer.plates.map_plate import ORIGIN, SHEET
 
 pytestmark = pytest.mark.long
 
-CLEAR = """() => {
-    const toasts = [...document.querySelectorAll(".toast")].map((toast) => toast.getBoundingClientRect());
-    const bars = document.getElementById("editor").hidden ? ".views" : "#editor .bar, #editor .foot";
-    const parts = [...document.querySelectorAll(`header, footer, ${bars}`)].map((part) => part.getBoundingClientRect());
-    const apart = (a, b) => a.right <= b.left || b.right <= a.left || a.bottom <= b.top || b.bottom <= a.top;
-    const inside = (a) => a.left >= 0 && a.right <= innerWidth && a.width > 40;
-    return toasts.length > 0 && toasts.every((toast, k) =>
-        inside(toast) && [...parts, ...toasts.slice(k + 1)].every((other) => apart(toast, other))); }"""
+SHOWN = """() => [...document.getElementById("line").children].filter((part) => part.offsetHeight > 0)
+    .map((part) => part.id || part.className)"""
 SAY = "async ([words, options]) => { (await import('/static/ui/words.js')).toast(words, options); }"
 LONG = (
     "The robot stays where it is: (3.1, 4.2) is 0.103 m from the wall; the robot needs 0.2 m of free floor around it."
@@ -41,25 +33,22 @@ def toasts(page: Page) -> list[str]:
 
 
 @pytest.mark.parametrize("size", [(1280, 800), (1024, 700), (390, 844), (640, 400)])
-def test_toasts_cover_neither_header_nor_buttons_nor_plates_nor_each_other(fake: Fake, browser, size) -> None:
-    with open_page(browser, fake[1], *size, light=size[0] == 1024, stage=False) as page:
-        if size[0] >= 1024:
-            quiet(page)
-            page.evaluate(SAY, ["No graphics card in use: the stage moves slowly.", {"notice": True, "stays": True}])
-            front = ORIGIN[1] + SHEET[2] - SHEET[1] / 2
-            assert box_of(page.locator(".toast"))["y"] >= on_screen(page, "all", (0.0, front, 0.0))[1]
-        for k in range(6):
-            page.evaluate(SAY, [f"{k}. {LONG}", {"bad": k % 2 == 0, "stays": True}])
-            assert page.evaluate(CLEAR)
-        assert f"5. {LONG}" in toasts(page)  # the newest is always shown
-        assert len(toasts(page)) >= 3 or size[1] < 500  # as many as there is room for
-
-
-def test_toasts_cover_none_of_the_editor_s_buttons(program: Program, browser) -> None:
-    with open_page(browser, program.url, stage=False) as page:
-        page.click("#edit")
-        page.evaluate(SAY, [LONG, {"stays": True}])
-        assert page.evaluate(CLEAR)
+def test_one_thing_is_told_at_a_time_and_the_stage_keeps_its_size(fake: Fake, browser, size) -> None:
+    with open_page(browser, fake[1], *size, light=size[0] == 1024, stage=False, first=True) as page:
+        quiet(page)
+        assert page.evaluate(SHOWN) == ["first"]
+        page.evaluate(SAY, [LONG, {"bad": True}])
+        assert page.evaluate(SHOWN) == ["alerts"]  # what went wrong goes before all else
+        page.keyboard.press("Escape")
+        page.click("#first-close")
+        quiet(page)
+        assert page.evaluate(SHOWN) == ["hints"]
+        stage = box_of(page.locator("#stage"))
+        for words, options, shown in ("Short.", {}, "toasts"), (LONG, {}, "toasts"), (LONG, {"bad": True}, "alerts"):
+            page.evaluate(SAY, [words, options])
+            assert page.evaluate(SHOWN) == [shown]
+            assert box_of(page.locator("#stage")) == stage
+            assert toasts(page) == [words]
 
 
 def test_a_toast_has_the_sign_of_its_kind_and_stays_for_as_long_as_reading_needs(fake: Fake, browser) -> None:
@@ -67,19 +56,17 @@ def test_a_toast_has_the_sign_of_its_kind_and_stays_for_as_long_as_reading_needs
         quiet(page)
         page.clock.install()
         page.clock.pause_at(page.evaluate("() => Date.now()") + 1000)
-        for words, options in ("Short.", {}), (LONG, {"bad": True}), ("It stays.", {"stays": True, "notice": True}):
+        for words, options, name in ("It stays.", {"stays": True, "notice": True}, "info"), ("Short.", {}, "check"):
             page.evaluate(SAY, [words, options])
-        signs = page.locator(".toast").evaluate_all(
-            "toasts => toasts.map((toast) => toast.querySelector('use').getAttribute('href')).sort()"
-        )
-        assert signs == ["#i-check", "#i-info", "#i-warn"]
-        page.clock.run_for(3900)
-        assert len(toasts(page)) == 3
-        page.clock.run_for(1500)
-        assert toasts(page) == [LONG, "It stays."]
+            expect(page.locator(".toast > .icon use").last).to_have_attribute("href", f"#i-{name}")
+        page.clock.run_for(4600)
+        assert toasts(page) == ["It stays."]
+        page.evaluate(SAY, [LONG, {"bad": True}])
+        page.clock.run_for(4600)
+        assert LONG in toasts(page)
         page.hover(".toast.bad")
         page.clock.run_for(60_000)
-        assert toasts(page) == [LONG, "It stays."]  # somebody points at it
+        assert LONG in toasts(page)  # somebody points at it
         page.mouse.move(5, 5)
         page.clock.run_for(60_000)
         assert toasts(page) == ["It stays."]

@@ -39,6 +39,7 @@ export async function open(use, { path = "", base = url, first = false, kept = {
     complete(window);
     if (request.method === "POST") request.headers.set("Origin", window.location.origin); // as each browser does
     if (!first) window.localStorage.setItem("first minute", "seen");
+    if (!window.localStorage.getItem("level")) window.localStorage.setItem("level", "lab");
     for (const [name, value] of Object.entries(kept)) window.localStorage.setItem(name, value);
     if (new URL(request.url).pathname.startsWith("/viser"))
       return new window.Response(NO_STAGE, { headers: { "Content-Type": "text/html" } });

@@ -11,6 +11,7 @@ import { Files, Source } from "./worlds/files.js";
 import { Gallery, Watched } from "./experiments/gallery.js";
 import { KeptBrain, takeBrainFiles } from "./worlds/kept_brain.js";
 import { closeOpenMenu, Header, Theming } from "./header/header.js";
+import { Levels } from "./ui/levels.js";
 import { Lesson } from "./lessons/lesson.js";
 import { LessonList } from "./lessons/list.js";
 import { Connection, WATCHER_KEYS, newId, onlyLook, takeNoFiles } from "./net/connection.js";
@@ -33,7 +34,8 @@ const drive = new HandDrive((command) => source.lacks === null && link.send(comm
 const keys = new Keys({ drive: (name, down) => drive.key(name, down), act, allUp: () => drive.allUp() });
 const viewer = new Viewer(link, keys);
 const aids = new Aids(link, viewer, (wish, done) => command(wish, done));
-const panel = new Panel($("panel"), link, (text) => toast(text, { bad: true }));
+const levels = new Levels(watching);
+const panel = new Panel($("panel"), link, (text) => toast(text, { bad: true }), levels);
 const source = new Source(panel);
 /** @type {State | null} */
 let state = null;
@@ -154,8 +156,6 @@ const restart = (/** @type {number} */ seed) => {
 };
 
 on("play", playOrPause);
-on("step", oneTick);
-on("stage-step", () => oneStage());
 on("walk-next", () => oneStage());
 on("walk-back", () => oneStage(true));
 on("walk-end", () => command({ type: "resume" }));

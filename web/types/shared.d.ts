@@ -240,10 +240,13 @@ type IndexIds = {
   "lessons-list": HTMLElementTagNameMap["div"];
   "lessons-title": HTMLElementTagNameMap["h2"];
   "lessons-wrong": HTMLElementTagNameMap["p"];
+  "level-explore": HTMLElementTagNameMap["button"];
+  "level-lab": HTMLElementTagNameMap["button"];
+  "level-watch": HTMLElementTagNameMap["button"];
+  "line": HTMLElementTagNameMap["section"];
   "loop-off": HTMLElementTagNameMap["button"];
   "mark-a": HTMLElementTagNameMap["button"];
   "mark-b": HTMLElementTagNameMap["button"];
-  "messages": HTMLElementTagNameMap["div"];
   "more": HTMLElementTagNameMap["button"];
   "new-close": HTMLElementTagNameMap["button"];
   "new-depth": HTMLElementTagNameMap["input"];
@@ -355,9 +358,7 @@ type IndexIds = {
   "spot": HTMLElementTagNameMap["div"];
   "spotlight": HTMLElementTagNameMap["button"];
   "stage": HTMLElementTagNameMap["iframe"];
-  "stage-step": HTMLElementTagNameMap["button"];
   "status": HTMLElementTagNameMap["p"];
-  "step": HTMLElementTagNameMap["button"];
   "theme": HTMLElementTagNameMap["button"];
   "tick-back": HTMLElementTagNameMap["button"];
   "tick-on": HTMLElementTagNameMap["button"];

@@ -10,12 +10,13 @@ from typing import Any, Literal, get_args
 import numpy as np
 from numpy.typing import NDArray
 
+from web.viewer.fits import HEIGHT, SIDE
+
 View = Literal["all", "office", "pose", "map"]
 VIEWS: tuple[View, ...] = get_args(View)
 NEAR, FAR = 1.0, 300.0
 FLIGHT_S = 0.7
 PHONE_ASPECT = 0.85  # width over height below which a screen counts as a phone's
-LOW_ASPECT = 2.2  # and above which it is low: a phone on its side
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,7 +29,8 @@ class Camera:
 Points = NDArray[np.float64]  # (n, 3)
 Point3 = tuple[float, float, float]
 At = tuple[float, float]  # x, y of a plate
-OFFICE_AT, MAP_AT, CELLS_AT = (-5.85, -2.2), (5.85, -2.2), (0.0, 8.5)
+APART = 11.7  # of the middles of two plates
+OFFICE_AT, CELLS_AT, MAP_AT = (-APART, 0.0), (0.0, 0.0), (APART, 0.0)
 
 
 @dataclass(frozen=True)
@@ -41,12 +43,15 @@ class Stands:
 
 
 def stands(*, office: bool, two: bool) -> Stands:
-    """office: whether there is one; without it, the others have its room. Of two brains each has its pose cells behind and its
-    map in front, and the office they share stands between."""
+    """In a row, from what is there to what it becomes: office, pose cells, map. office: whether there is one; without it, the
+    others have its room. Of two brains each has its pose cells behind and its map in front, and the office they share stands
+    between."""
     if two:
-        beside = 10.4 if office else MAP_AT[0]
-        return Stands(CELLS_AT, ((-beside, CELLS_AT[1]), (beside, CELLS_AT[1])), (OFFICE_AT, MAP_AT))
-    return Stands(OFFICE_AT, (CELLS_AT,), (MAP_AT if office else (0.0, MAP_AT[1]),))
+        beside, back = APART if office else APART / 2, 10.7
+        return Stands((0.0, back), ((-beside, back), (beside, back)), ((-APART / 2, 0.0), (APART / 2, 0.0)))
+    if not office:
+        return Stands(OFFICE_AT, ((-APART / 2, 0.0),), ((APART / 2, 0.0),))
+    return Stands(OFFICE_AT, (CELLS_AT,), (MAP_AT,))
 
 
 def _block(size: tuple[float, float, float], y: float = 0.0) -> Points:
@@ -56,8 +61,9 @@ def _block(size: tuple[float, float, float], y: float = 0.0) -> Points:
     return np.array(corners)
 
 
-_OFFICE = _MAP = _block((11.0, 10.0, 0.0), -0.5)
-_CELLS = np.vstack([_block((9.4, 9.9, 0.0), -0.75), _block((7.0, 7.0, 4.6))])
+SHEET = (11.0, 10.0, -0.5)  # of every plate: width, depth, y of the middle
+_PLATE = _block((SHEET[0], SHEET[1], 0.0), SHEET[2])
+_CELLS = np.vstack([_PLATE, _block((SIDE, SIDE, HEIGHT))])
 
 
 @dataclass(frozen=True)
@@ -68,21 +74,16 @@ class _Look:
     tall_deg: tuple[float, float]
     azimuth_deg: tuple[float, float]
     fov_deg: float
-    # Shares of the canvas that are left: above for one row of buttons, below for what the page says.
-    free: tuple[float, float]
 
 
-_BESIDE = 0.015  # share of the canvas that is left free around
+_FREE = 0.015  # share of the canvas that is left around
 _LOOKS: dict[View, _Look] = {
-    "all": _Look((42, 54), (50, 72), (0, 0), 29, (0.095, 0.07)),
-    "office": _Look((46, 58), (56, 74), (0, 0), 30, (0.11, _BESIDE)),
-    "pose": _Look((38, 46), (42, 50), (-22, -10), 30, (0.09, _BESIDE)),
-    "map": _Look((46, 58), (56, 74), (0, 0), 30, (0.11, _BESIDE)),
+    "all": _Look((42, 60), (50, 72), (0, 0), 29),
+    "office": _Look((46, 58), (56, 74), (0, 0), 30),
+    "pose": _Look((38, 46), (42, 50), (-22, -10), 30),
+    "map": _Look((46, 58), (56, 74), (0, 0), 30),
 }
 _STEP_DEG = 2.0
-_LOW_ROOM = (0.2, _BESIDE)  # in a low one the row of buttons takes a fifth
-_ROOM = (0.09, 0.125)  # with two brains: above for the buttons, below for the figures
-_LOW_ROOM_OF_TWO = (0.2, 0.24)
 
 
 @lru_cache(maxsize=256)
@@ -90,24 +91,23 @@ def camera_for(view: View, aspect: float, office: bool = True, two: bool = False
     """aspect: width over height of the visible canvas. office: whether there is one, else the others have its room. two:
     whether two brains stand beside one another.
 
-    The plates are as large as the window allows: of the elevations in question, it takes the one with the nearest camera."""
+    The plates are as large as the window allows: of the elevations in question, it takes the one that fills most of it."""
     tall, look = aspect < PHONE_ASPECT, _LOOKS[view if office or view != "office" else "all"]
     low, high = look.tall_deg if tall else look.wide_deg
-    rooms = (_LOW_ROOM, _LOW_ROOM_OF_TWO) if aspect > LOW_ASPECT else (look.free, _ROOM)
     points, azimuth_deg = corners_of(view, office, two), 0 if two else look.azimuth_deg[tall]
     found = [
-        _fitted(points, elevation, azimuth_deg, look.fov_deg, max(aspect, 0.1), rooms[two])
+        _fitted(points, elevation, azimuth_deg, look.fov_deg, max(aspect, 0.1))
         for elevation in np.arange(low, high + 1e-9, _STEP_DEG).tolist()
     ]
-    return min(found, key=lambda camera: float(np.linalg.norm(camera.position - camera.look_at)))
+    return max(found, key=lambda camera: _filled(camera, points))
 
 
 def corners_of(view: View, office: bool, two: bool) -> Points:
     """What a view shows."""
     at = stands(office=office, two=two)
     cells = np.vstack([_CELLS + np.array((*here, 0.0)) for here in at.cells])
-    maps = np.vstack([_MAP + np.array((*here, 0.0)) for here in at.maps])
-    floor = _OFFICE + np.array((*at.office, 0.0))
+    maps = np.vstack([_PLATE + np.array((*here, 0.0)) for here in at.maps])
+    floor = _PLATE + np.array((*at.office, 0.0))
     if view in ("pose", "map"):
         return cells if view == "pose" else maps
     if view == "office" and office:
@@ -115,26 +115,27 @@ def corners_of(view: View, office: bool, two: bool) -> Points:
     return np.vstack([cells, maps, floor] if office else [cells, maps])
 
 
-def _fitted(
-    points: Points, elevation_deg: float, azimuth_deg: float, fov_deg: float, aspect: float, free: tuple[float, float]
-) -> Camera:
-    """The nearest camera that looks from there and sees all of (n, 3) points. free: shares of the canvas left above and
-    below."""
+def _fitted(points: Points, elevation_deg: float, azimuth_deg: float, fov_deg: float, aspect: float) -> Camera:
+    """The nearest camera that looks from there and sees all of (n, 3) points."""
     up_rad, turn = math.radians(elevation_deg), math.radians(azimuth_deg)
     back = np.array([math.sin(turn) * math.cos(up_rad), -math.cos(turn) * math.cos(up_rad), math.sin(up_rad)])
     right = np.array([math.cos(turn), math.sin(turn), 0.0])
     up = np.cross(back, right)
     across, aloft, near = points @ right, points @ up, points @ back
-    half = math.tan(math.radians(fov_deg) / 2)
-    beside, top, bottom = half * aspect * (1 - 2 * _BESIDE), half * (1 - 2 * free[0]), half * (1 - 2 * free[1])
+    half = math.tan(math.radians(fov_deg) / 2) * (1 - 2 * _FREE)
+    beside = half * aspect
     # a point is seen if  across - x <= beside (distance - near),  and so on for the other three sides
     most_x, least_x = (across + beside * near).max(), (across - beside * near).min()
-    most_y, least_y = (aloft + top * near).max(), (aloft - bottom * near).min()
-    distance = max((most_x - least_x) / (2 * beside), (most_y - least_y) / (top + bottom))
-    x = (most_x + least_x) / 2
-    y = (bottom * most_y + top * least_y) / (top + bottom)
-    middle = right * x + up * y
+    most_y, least_y = (aloft + half * near).max(), (aloft - half * near).min()
+    distance = max((most_x - least_x) / (2 * beside), (most_y - least_y) / (2 * half))
+    middle = right * (most_x + least_x) / 2 + up * (most_y + least_y) / 2
     return Camera(middle + back * distance, middle, math.radians(fov_deg))
+
+
+def _filled(camera: Camera, points: Points) -> float:
+    """The area around all of (n, 3) points, in squares of half the canvas's height."""
+    half = math.tan(camera.fov_rad / 2) * float(np.linalg.norm(camera.position - camera.look_at))
+    return float(np.ptp(seen_by(camera, points)[0] / half, axis=0).prod())
 
 
 def seen_by(camera: Camera, points: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

@@ -138,12 +138,12 @@ def _turned(angle_rad: float) -> Array:
     return np.array([[c, -s], [s, c]])
 
 
-SIDE, HEIGHT = 7.0, 4.6
+SIDE, HEIGHT = 7.2, 4.7
 
 
 class CellFit:
-    """From pose cells to the glass box on their plate: a torus unrolled into 7 x 7 x 4.6. `shape` is (n_theta, n_y, n_x); x' and
-    y' start at the box's left front corner, theta' at its floor."""
+    """From pose cells to the glass box on their plate: a torus unrolled. `shape` is (n_theta, n_y, n_x); x' and y' start at the
+    box's left front corner, theta' at its floor."""
 
     def __init__(self, shape: tuple[int, int, int]) -> None:
         self.shape = shape

@@ -14,12 +14,12 @@ from numpy.typing import NDArray
 
 from web.messages import ExperienceReport, Inspect, Pose, SetGoal, Snapshot
 from web.switches import Name
-from web.viewer.camera_views import At, Camera, View, camera_for, ray_through, seen_by, stands
+from web.viewer.camera_views import SHEET, At, Camera, View, camera_for, ray_through, seen_by, stands
 from web.viewer.fits import DEPTH, HEIGHT, SIDE, WIDTH, CellFit, MapFit, OfficeFit, Overlaid, overlaid, refit
 from web.viewer.marks.inspected import links_of, spots_of
 from web.viewer.marks.robot import ENLARGED, SMALLEST
 from web.viewer.plates.map_plate import NODE_Z, nearest, on_sheet
-from web.viewer.plates.plate import point_on_plane
+from web.viewer.plates.plate import CORNER, point_on_plane
 from web.viewer.pointer import BESIDE_MAP, NOTHING_THERE, OTHER_BRAIN
 from web.viewer.primitives import meshes
 from web.viewer.primitives.palette import BRAINS, Palette, Rgb, mix
@@ -31,7 +31,6 @@ WALL_HIGH, MOST_WALLS, MOST_DOTS = 0.6, 1200, 900
 SURE = 0.15  # how far from one half a probability is shown
 TIMES = 12  # shades of the goal memory
 Shades = tuple[NDArray[np.int64], list[Rgb]]  # (n_y, n_x) which of the colours each cell has, -1: none
-CELL_SHEET, SHEET = (9.4, 9.9, -0.75), (11.0, 10.0, -0.5)  # width, depth, y of the middle
 
 
 def picture(snapshot: Snapshot, view: View, aspect: float, palette: Palette, on: Collection[Name]) -> str:
@@ -45,10 +44,10 @@ def picture(snapshot: Snapshot, view: View, aspect: float, palette: Palette, on:
     sketch = _Sketch(camera_for(view, aspect, office, beside is not None), palette)
     for k, (cells_at, map_at) in enumerate(zip(at.cells, at.maps, strict=True)):
         rim = palette.rim if beside is None else BRAINS[palette.dark][k]
-        sketch.sheet(cells_at, CELL_SHEET, rim)
-        sketch.sheet(map_at, SHEET, rim)
+        sketch.sheet(cells_at, rim)
+        sketch.sheet(map_at, rim)
     if office:
-        sketch.sheet(at.office, SHEET, palette.rim)
+        sketch.sheet(at.office, palette.rim)
     for (seen, laid), where in zip(brains, at.cells, strict=True):
         _cells(sketch, seen, laid, where)
     if office:
@@ -86,9 +85,9 @@ class _Sketch:
         half = float(np.linalg.norm(camera.look_at - camera.position)) * math.tan(camera.fov_rad / 2)
         self._zoom = UNITS / 2 / half
 
-    def sheet(self, at: At, size: tuple[float, float, float], rim: Rgb) -> None:
-        width, depth, centre_y = size
-        outline = meshes.rounded_rectangle(width, depth, 0.45, centre=(0.0, centre_y)) + at
+    def sheet(self, at: At, rim: Rgb) -> None:
+        width, depth, centre_y = SHEET
+        outline = meshes.rounded_rectangle(width, depth, CORNER, centre=(0.0, centre_y)) + at
         self.area(meshes.lifted(outline, -0.055), self.palette.sheet, rim)
 
     def area(self, points: Points, fill: tuple[int, int, int], rim: tuple[int, int, int] | None = None) -> None:

@@ -13,14 +13,12 @@ from tests.fake_snapshots import fake_snapshot
 from tests.unit.web.bench import Bench
 from web.http.state import state, to_json
 from web.messages import BesideView, BrainFigures, Changed, Difference, MapLayer, SetGoal, Snapshot
-from web.viewer.camera_views import VIEWS, camera_for, seen_by
+from web.viewer.camera_views import SHEET, VIEWS, camera_for, seen_by
 from web.viewer.fits import MapFit, refit
-from web.viewer.plates import map_plate, office_plate, pose_cell_plate
 from web.viewer.pointer import Click
 
 pytestmark = pytest.mark.slow
 
-SHEETS = {"office": office_plate.SHEET, "pose_cells": pose_cell_plate.SHEET, "map": map_plate.SHEET}
 PLATES = ("office", "pose_cells", "map", "pose_cells_2", "map_2")
 
 
@@ -50,7 +48,7 @@ def at(bench: Bench, plate: str) -> np.ndarray:
 
 
 def corners(bench: Bench, plate: str) -> np.ndarray:
-    width, depth, y, _ = SHEETS[plate.removesuffix("_2")]
+    width, depth, y = SHEET
     around = [(sx * width / 2, y + sy * depth / 2, 0.0) for sx in (-1, 1) for sy in (-1, 1)]
     return at(bench, plate) * (1, 1, 0) + around
 
@@ -131,7 +129,7 @@ def test_without_an_office_the_boxes_stand_closer(bench: Bench) -> None:
     bench.show(replace(two(), world=None))
     assert abs(at(bench, "pose_cells")[0]) < 6.0
     bench.show(replace(fake_snapshot(431), world=None))
-    assert at(bench, "map")[0] == 0.0
+    assert at(bench, "map")[0] == -at(bench, "pose_cells")[0] == 5.85
 
 
 def test_the_page_is_told_of_both_and_never_of_infinity() -> None:

@@ -86,7 +86,7 @@ def test_a_marker_goes_when_its_goal_is_refused_or_not_set_in_time(stage: Bench)
 
 def test_a_click_that_hits_nothing_says_so(stage: Bench) -> None:
     for x, y, why in (
-        (0.0, -6.6, NOTHING_THERE), (-12.0, 0.0, NOTHING_THERE), (5.2, 0.0, BESIDE_MAP), (0.0, -4.6, BESIDE_MAP),
+        (0.0, -6.6, NOTHING_THERE), (-5.85, 0.0, NOTHING_THERE), (5.2, 0.0, BESIDE_MAP), (0.0, -4.6, BESIDE_MAP),
     ):  # fmt: skip
         press(stage, x, y)
         assert (x, y, stage.told.pop()) == (x, y, why)
@@ -118,7 +118,7 @@ def test_a_click_into_the_pose_cells_inspects_the_strongest_voxel_it_hits_or_the
     layer = PLAIN.pose_cells
     _, y, x = layer.cells[0].tolist()
     voxel = CellFit(layer.shape).cells(layer.cells[:1])[0]
-    for aim, wanted in ((voxel, (x, y)), (np.array([-3.4, -3.4, 0.0]), (0, 0))):
+    for aim, wanted in ((voxel, (x, y)), (np.array([-3.55, -3.55, 0.0]), (0, 0))):
         stage.engine.commands.clear()
         stage.click(tuple(np.array(CELLS_AT) + aim))
         stage.show(None, 0.05)

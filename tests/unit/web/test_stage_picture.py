@@ -16,7 +16,7 @@ from tests.unit.web.crowded import two_brains
 from tests.unit.web.doubles import house
 from web.messages import GoalMemoryLayer, OccupancyLayer, OccupancyPicture
 from web.switches import NAMES
-from web.viewer.camera_views import CELLS_AT, LOW_ASPECT, MAP_AT, OFFICE_AT, VIEWS, Camera, camera_for, seen_by, stands
+from web.viewer.camera_views import CELLS_AT, MAP_AT, OFFICE_AT, SHEET, VIEWS, Camera, camera_for, seen_by, stands
 from web.viewer.fits import SIDE, MapFit, OfficeFit, refit
 from web.viewer.picture import UNITS, picture
 from web.viewer.plates import map_plate, office_plate, pose_cell_plate
@@ -80,14 +80,13 @@ def test_the_plates_fill_the_window_and_stay_in_it(subtests: pytest.Subtests) ->
         with subtests.test(view=view, aspect=aspect):
             corners = []
             for plate, at in (PLATES[name] for name in PLATES if view in ("all", name)):
-                width, depth, centre_y, _ = plate.SHEET
+                width, depth, centre_y = SHEET
                 assert plate.ORIGIN[:2] == at
                 corners += [(*(at + np.array([0.0, centre_y]) + side * (width, depth)), 0.0) for side in sides]
             x, y = (pinhole(camera_for(view, aspect), np.array(corners)) / (aspect, 1)).T
             assert np.abs([x, y]).max() < 1
             filled = max(np.ptp(x), np.ptp(y) if view in ("office", "map") else 2 * abs(y.min()))
-            # of 2; the rest is for buttons above and for what is said below
-            assert filled > (1.5 if aspect > LOW_ASPECT else 1.65)
+            assert filled > 1.65  # of 2
 
 
 def test_what_lies_on_the_floors_is_where_the_plates_have_it() -> None:

@@ -41,6 +41,7 @@ export class Header {
     $("play").setAttribute("aria-label", playing ? "Pause" : "Play");
     $("play").title = playing ? "Pause (space)" : "Play (space)";
     if (document.activeElement !== $("speed")) choose($("speed"), String(state.speed));
+    $("explore").disabled = state.mode === "explore" || state.mode === "recorded";
     $("seed").textContent = String(state.seed);
     this.showWorlds(state.world, page);
     this.showStatus(page);

@@ -26,6 +26,7 @@ class TabList {
     const tab = make("button", { type: "button", id: `tab-${name.toLowerCase()}`, textContent: name });
     tab.setAttribute("role", "tab");
     tab.setAttribute("aria-controls", `panel-${name.toLowerCase()}`);
+    tab.dataset.from = FROM[name];
     tab.addEventListener("click", () => this.chosen(name));
     return tab;
   }
@@ -46,7 +47,7 @@ class TabList {
 
   /** @param {KeyboardEvent} event */
   pressed(event) {
-    const names = [...this.tabs.keys()].filter((name) => !this.tabs.get(name)?.hidden);
+    const names = [...this.tabs.keys()].filter((name) => this.tabs.get(name)?.checkVisibility());
     const now = names.findIndex((name) => this.tabs.get(name) === event.target);
     /** @type {Record<string, number>} */
     const places = { ArrowRight: now + 1, ArrowLeft: now - 1, Home: 0, End: names.length - 1 };
@@ -57,6 +58,17 @@ class TabList {
     this.tabs.get(name)?.focus();
   }
 }
+
+/** From which level on a tab is there. @type {Record<string, import("../ui/levels.js").Level>} */
+const FROM = {
+  Senses: "explore",
+  Memory: "explore",
+  Truth: "explore",
+  Office: "explore",
+  Inspect: "lab",
+  Tick: "lab",
+  Tune: "lab",
+};
 
 /**
  * @typedef {(command: Command | PageMessage) => Promise<Answer>} Ask
@@ -72,11 +84,13 @@ export class Panel {
    * @param {HTMLElement} box
    * @param {import("../net/connection.js").Connection} link
    * @param {(text: string) => void} complain
+   * @param {import("../ui/levels.js").Levels} levels
    */
-  constructor(box, link, complain) {
+  constructor(box, link, complain, levels) {
     const narrow = window.matchMedia("(max-width: 1000px)"); // there the panel is a sheet over the plates
     this.box = box;
     this.link = link;
+    this.levels = levels;
     /** @type {Ask} */
     const ask = (command) => link.ask(command);
     const inspect = (/** @type {Record<string, number>} */ wish) => void ask({ type: "inspect", ...wish });
@@ -102,11 +116,15 @@ export class Panel {
     this.opened = "Senses";
     this.next_ms = 0;
     this.later = 0;
-    this.shown = !narrow.matches;
+    this.shown = !narrow.matches && levels.has("explore");
     this.build();
     this.open("Senses");
     this.show(this.shown);
-    narrow.addEventListener("change", () => this.show(!narrow.matches && document.body.dataset.presenter !== "true"));
+    const fits = () => !narrow.matches && document.body.dataset.presenter !== "true" && levels.has("explore");
+    narrow.addEventListener("change", () => this.show(fits()));
+    levels.addEventListener("level", (event) =>
+      this.levelled(/** @type {CustomEvent} */ (event).detail.before, fits()),
+    );
     document.addEventListener("visibilitychange", () => this.sendTabs());
     link.on("hello", () => {
       this.received.clear(); // a new connection: the server sends everything again
@@ -134,9 +152,17 @@ export class Panel {
     this.box.append(make("div", { className: "head" }, this.tabs.box, close), ...this.panels.values());
   }
 
+  /** Another level: the panel comes and goes with *Explore*, and its tabs with theirs. @param {string} before @param {boolean} fits */
+  levelled(before, fits) {
+    if (!this.levels.has("explore")) this.show(false);
+    if (!this.levels.has(FROM[this.opened])) this.open("Senses");
+    if (before === "watch" && fits) this.show(true);
+  }
+
   /** @param {string} name */
   open(name) {
     this.opened = name;
+    if (this.shown) this.levels.need(FROM[name]);
     this.tabs.select(name);
     for (const [other, box] of this.panels) box.hidden = other !== name;
     this.sendTabs();
@@ -160,6 +186,7 @@ export class Panel {
   /** @param {boolean} on */
   show(on) {
     this.shown = on;
+    if (on) this.levels.need(FROM[this.opened]);
     document.body.dataset.panels = String(on);
     for (const button of document.querySelectorAll("[data-shows-panel]"))
       button.setAttribute("aria-expanded", String(on));
@@ -201,6 +228,8 @@ export class Panel {
   inspected(name) {
     const before = this.looked;
     this.looked = name;
-    if (name !== null && before !== undefined && name !== before) this.open("Inspect");
+    if (name === null || before === undefined || name === before) return;
+    this.open("Inspect");
+    if (!this.levels.has("lab")) this.show(true);
   }
 }

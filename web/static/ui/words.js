@@ -1,5 +1,5 @@
-// What the page says: sentences made of what the server says, sizes and times in words, and toasts, which are short sentences over
-// the plates: what was done, what was refused, what people should know. Text only, never HTML.
+// What the page says: sentences made of what the server says, sizes and times in words, and toasts, which are short sentences in the
+// line beneath the stage: what was done, what was refused, what people should know. Text only, never HTML.
 
 import { $, icon } from "./elements.js";
 
@@ -23,7 +23,6 @@ export function clock(seconds) {
 /** A time for people, to the tenth. @param {number} seconds */
 export const fine = (seconds) => `${clock(seconds)}.${Math.floor(seconds * 10 + 1e-6) % 10}`;
 
-const MOST = 4; // toasts
 let count = 0; // of all toasts so far
 
 /**
@@ -31,7 +30,7 @@ let count = 0; // of all toasts so far
  * @param {string} text @param {{ bad?: boolean, notice?: boolean, stays?: boolean }} [kind]
  */
 export function toast(text, { bad = false, notice = false, stays = false } = {}) {
-  for (const other of all()) if (other.dataset.text === text) other.remove();
+  for (const other of all()) if (!("stays" in other.dataset) || other.dataset.text === text) other.remove();
   const box = document.createElement("div");
   box.className = bad ? "toast bad" : "toast";
   Object.assign(box.dataset, { text, number: String(++count) });
@@ -46,7 +45,6 @@ export function toast(text, { bad = false, notice = false, stays = false } = {})
   );
   box.addEventListener("click", () => box.remove());
   $(bad ? "alerts" : "toasts").append(box);
-  makeRoom();
   if (stays) box.dataset.stays = "";
   else leave(box, 4000 + 80 * text.length);
   return box;
@@ -62,7 +60,7 @@ export function dismissToast() {
 // Oldest first.
 const all = () => {
   /** @type {NodeListOf<HTMLElement>} */
-  const boxes = $("messages").querySelectorAll(".toast");
+  const boxes = $("line").querySelectorAll(".toast");
   return [...boxes].sort((a, b) => Number(a.dataset.number) - Number(b.dataset.number));
 };
 
@@ -70,14 +68,4 @@ const all = () => {
 function leave(box, after_ms) {
   const unread = () => document.hidden || box.matches(":hover, :focus-within");
   setTimeout(() => box.isConnected && (unread() ? leave(box, after_ms) : box.remove()), after_ms);
-}
-
-// Keeps no more than there is room for; those marked to stay go last.
-function makeRoom() {
-  const place = $("messages");
-  for (;;) {
-    const boxes = all();
-    if (boxes.length < 2 || (boxes.length <= MOST && place.scrollHeight <= place.clientHeight)) return;
-    (boxes.slice(0, -1).find((box) => !("stays" in box.dataset)) ?? boxes[0]).remove();
-  }
 }

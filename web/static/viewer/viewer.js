@@ -79,13 +79,16 @@ export class Viewer extends EventTarget {
     this.link.send(camera ? { type: "camera", name: view, at: camera } : { type: "view", name: view });
   }
 
-  // A camera leaves one row of buttons free. What they need beyond that is taken from the frame, whose shape viser tells the camera.
+  /** The stage has what the buttons above it and the figures of two brains beneath it leave. */
   makeRoom() {
-    const bar = /** @type {HTMLElement} */ (find(document, ".stage-bar"));
-    const first = /** @type {HTMLElement} */ (find(bar, ".views"));
     const main = /** @type {HTMLElement} */ (this.frame.parentElement);
-    const measure = () => main.style.setProperty("--rows", `${Math.max(bar.offsetHeight - first.offsetHeight, 0)}px`);
-    for (const part of [bar, first]) new ResizeObserver(measure).observe(part);
+    const bar = /** @type {HTMLElement} */ (find(main, ".stage-bar"));
+    const measure = () => {
+      const { offsetTop, offsetHeight } = $("beside");
+      main.style.setProperty("--above", `${bar.offsetTop + bar.offsetHeight}px`);
+      main.style.setProperty("--below", `${offsetHeight ? main.clientHeight - offsetTop : 0}px`);
+    };
+    for (const part of [main, bar, $("beside")]) new ResizeObserver(measure).observe(part);
   }
 
   mark() {

@@ -22,6 +22,7 @@ from web.messages import (
     TimesLayer,
 )
 from web.messages.robot_status import goal_status, seconds_words
+from web.viewer.camera_views import MAP_AT, SHEET
 from web.viewer.fits import DEPTH, WIDTH, MapFit, refit
 from web.viewer.marks.graph import ClosureMarks, Links, Nodes
 from web.viewer.marks.hypotheses import Hypotheses
@@ -34,8 +35,7 @@ from web.viewer.primitives import images, meshes
 from web.viewer.primitives.labels import ROBOT, Sign, add_mesh, add_picture
 from web.viewer.primitives.palette import Palette
 
-ORIGIN = (5.85, -2.2, 0.0)
-SHEET = (11.0, 10.0, -0.5, 0.45)
+ORIGIN = (*MAP_AT, 0.0)
 NODE_Z, LINK_Z, ARROW_Z = 0.05, 0.03, 0.22
 ROBOT_SIZE = (0.9, 0.7)  # as it is seen, whatever its heading
 BAR = (2.7, 0.26)
@@ -48,7 +48,7 @@ NO_MAP = "no map yet: the robot has not moved"
 
 class MapPlate(Plate):
     def __init__(self, scene: viser.SceneApi, palette: Palette, name: str = "map") -> None:
-        super().__init__(scene, palette, name, ORIGIN, SHEET, beside_title=BAR[0] + 0.3)
+        super().__init__(scene, palette, name, ORIGIN, beside_title=BAR[0] + 0.3)
         self.fit = MapFit()
         self._layer: MapLayer | None = None
         floor = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)]) * (WIDTH / 2, DEPTH / 2)
@@ -228,7 +228,7 @@ def nearest(layer: MapLayer, place: tuple[float, float], fit: MapFit) -> int | N
 
 def on_sheet(plate_xy: tuple[float, float]) -> bool:
     """Whether a point is on the plate, floor or not."""
-    width, depth, centre_y, _ = SHEET
+    width, depth, centre_y = SHEET
     return abs(plate_xy[0]) <= width / 2 and abs(plate_xy[1] - centre_y) <= depth / 2
 
 

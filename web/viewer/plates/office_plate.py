@@ -10,6 +10,7 @@ import viser
 from numpy.typing import NDArray
 
 from web.messages import KnownPlace, LivingLayer, Movements, Pose, Senses, WorldDrawing
+from web.viewer.camera_views import OFFICE_AT
 from web.viewer.fits import DEPTH, METRE_HIGH, WIDTH, OfficeFit
 from web.viewer.marks.actors import LATE, LivingThings
 from web.viewer.marks.movements import MovementArcs
@@ -21,8 +22,7 @@ from web.viewer.primitives import images, meshes
 from web.viewer.primitives.labels import ROBOT, add_mesh, add_picture
 from web.viewer.primitives.palette import Palette, Rgb, mix
 
-ORIGIN = (-5.85, -2.2, 0.0)
-SHEET = (11.0, 10.0, -0.5, 0.45)
+ORIGIN = (*OFFICE_AT, 0.0)
 OFFICE = "Office", "the true world - the robot cannot know this"
 TRUE_PATH = "True path", "as the recording tells it - the robot cannot know this"
 Array = NDArray[np.float64]
@@ -30,7 +30,7 @@ Array = NDArray[np.float64]
 
 class OfficePlate(Plate):
     def __init__(self, scene: viser.SceneApi, palette: Palette) -> None:
-        super().__init__(scene, palette, "office", ORIGIN, SHEET)
+        super().__init__(scene, palette, "office", ORIGIN)
         self._heading = OFFICE
         self.set_heading(*OFFICE)
         self.world: WorldDrawing | None = None

@@ -5,11 +5,13 @@ from __future__ import annotations
 import numpy as np
 import viser
 
+from web.viewer.camera_views import SHEET
 from web.viewer.primitives import images, meshes
 from web.viewer.primitives.labels import LabelRoom, Sign, add_mesh
 from web.viewer.primitives.palette import Palette, Rgb
 
 TITLE_M, SUBTITLE_M = 0.62, 0.36
+CORNER = 0.45  # radius
 MOST_LARGE = 1.2  # a larger subtitle has no room between title and edge; the title is large as it is
 BEHIND = (
     0.0,
@@ -28,15 +30,14 @@ class Plate:
         palette: Palette,
         name: str,
         origin: tuple[float, float, float],
-        sheet: tuple[float, float, float, float],  # width, depth, centre y, corner radius
         beside_title: float = 0.0,  # room that the title leaves at its right
     ) -> None:
         self.scene, self.palette, self.root, self.origin = scene, palette, f"/{name}", origin
         self.frame = scene.add_frame(self.root, show_axes=False, position=origin)
-        width, depth, centre_y, radius = sheet
+        width, depth, centre_y = SHEET
         self.labels = LabelRoom((width / 2 - 0.5, depth / 2 - abs(centre_y)))
         self.left, self.front = -width / 2 + 0.5, centre_y - depth / 2
-        outline = meshes.rounded_rectangle(width, depth, radius, centre=(0.0, centre_y))
+        outline = meshes.rounded_rectangle(width, depth, CORNER, centre=(0.0, centre_y))
         add_mesh(scene, f"{self.root}/slab", meshes.sides(outline, -0.32, -0.06), palette.lit(palette.slab))
         vertices, faces = meshes.flat_polygon(outline, SHEET_Z)
         far = (vertices - np.array(BEHIND, np.float32), faces)

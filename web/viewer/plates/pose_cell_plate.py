@@ -11,7 +11,7 @@ import viser
 from numpy.typing import NDArray
 
 from web.messages import ExperienceReport, GoalMemoryLayer, Hypothesis, OccupancyLayer, PoseCellLayer, Report, Snap
-from web.viewer.camera_views import camera_for, seen_by
+from web.viewer.camera_views import CELLS_AT, camera_for, seen_by
 from web.viewer.fits import HEIGHT, SIDE, CellFit, broken_where_it_wraps
 from web.viewer.marks.hypotheses import CellHypotheses
 from web.viewer.marks.inspected import CellMark
@@ -22,8 +22,7 @@ from web.viewer.primitives import images, meshes
 from web.viewer.primitives.labels import LEAN_RAD, Pill, Place, Sign, add_mesh, add_picture, pill_width
 from web.viewer.primitives.palette import Palette, mix, vertex_paint
 
-ORIGIN = (0.0, 8.5, 0.0)
-SHEET = (9.4, 9.9, -0.75, 0.45)
+ORIGIN = (*CELLS_AT, 0.0)
 HALF = SIDE / 2
 VOXELS, VOXEL_STEP, VOXEL_SPARE = 500, 64, 128  # room for them grows in steps, and shrinks when this much is unused
 PACKETS = 4
@@ -40,7 +39,7 @@ WEAKEST = 0.02  # share of the strongest cell
 
 class PoseCellPlate(Plate):
     def __init__(self, scene: viser.SceneApi, palette: Palette, name: str = "pose_cells") -> None:
-        super().__init__(scene, palette, name, ORIGIN, SHEET)
+        super().__init__(scene, palette, name, ORIGIN)
         self.set_heading("Pose cells", BELIEVES)
         self._box = GlassBox(scene, palette, self.root)
         self._shape: tuple[int, int, int] = (0, 0, 0)
@@ -247,7 +246,7 @@ def pill_places(
     """(n, 3) places for pills above packets at `tops` (n, 3) on a plate that stands at `at`, so that none covers another in
     the view of all plates."""
     raised = tops + np.array([0.0, 0.0, 0.95])
-    seen, larger = seen_by(camera_for("all", 1.2), raised + np.array(at))
+    seen, larger = seen_by(camera_for("all", 1.6), raised + np.array(at))
     height = pill_m * float(larger.max(initial=1.0))
     shift = (spread(seen, widths * larger, height) - seen) / larger[:, None]
     return raised + np.column_stack([shift[:, 0], shift[:, 1] * math.cos(LEAN_RAD), shift[:, 1] * math.sin(LEAN_RAD)])
