@@ -1,5 +1,5 @@
-"""How each page wants to be shown: the theme it has chosen, and whether it presents. A page that wants another look leaves the
-viewer it is shown."""
+"""How each page wants to be shown: the theme it has chosen, whether it presents, and whether its reader wants little motion. A
+page that wants another look leaves the viewer it is shown."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ MOST_PAGES = 1024
 class Look(NamedTuple):
     theme: Theme = "dark"
     large: bool = False  # letters that can be read from the last row
+    still: bool = False  # nothing moves by itself but what the run moves
 
 
 class Themes:
@@ -28,8 +29,8 @@ class Themes:
     def of(self, page: str) -> Look:
         return self._chosen.get(page, Look())
 
-    def choose(self, page: str, theme: Theme) -> None:
-        self._want(page, self.of(page)._replace(theme=theme))
+    def choose(self, page: str, theme: Theme, still: bool = False) -> None:
+        self._want(page, self.of(page)._replace(theme=theme, still=still))
 
     def enlarge(self, page: str, large: bool) -> None:
         self._want(page, self.of(page)._replace(large=large))

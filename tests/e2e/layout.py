@@ -26,7 +26,8 @@ BOXES = """([parts, least]) => {
         if (box.left < -0.5 || box.right > innerWidth + 0.5 || box.top < -0.5 || box.bottom > bottom + 0.5)
             wrong.push(`${name(part)} sticks out`);
         for (const other of all.slice(k + 1)) {
-            const sheet = [part.id, other.id].some((id) => id === "panel" && innerWidth <= 1000 || id === "lesson" && innerWidth <= 760);
+            const sheets = [...innerWidth <= 1000 ? ["panel"] : [], ...innerWidth <= 760 ? ["lesson"] : []];
+            const sheet = sheets.includes(part.id) || sheets.includes(other.id);
             if (!sheet && !part.contains(other) && !other.contains(part) && !apart(box, other.getBoundingClientRect()))
                 wrong.push(`${name(part)} and ${name(other)} cover one another`);
         }

@@ -68,7 +68,8 @@ WRONG = """() => {
         const text = arrow ? world.selectedOptions[0].text : part.innerText.trim();
         const room = part.clientWidth - parseFloat(style.paddingLeft) - parseFloat(style.paddingRight) - arrow;
         pen.font = style.font;
-        if (part.checkVisibility() && innerWidth > 860 && pen.measureText(text).width > room + 1) wrong.push(`${part.id} does not say ${text}`);
+        if (!part.checkVisibility() || innerWidth <= 860) continue;
+        if (pen.measureText(text).width > room + 1) wrong.push(`${part.id} does not say ${text}`);
     }
     return wrong;
 }"""

@@ -145,7 +145,7 @@ def menus(program: Program, page: Page) -> Iterator[Shown]:
 
 
 def dialogs(_program: Program, page: Page) -> Iterator[Shown]:
-    for key, filled in ("?", "#keys li"), ("c", "#lessons-list button"), ("/", "li"), ("g", ".card"):
+    for key, filled in ("?", "#help-plates li"), ("c", "#lessons-list button"), ("/", "li"), ("g", ".card"):
         page.keyboard.press(key)
         page.locator("dialog[open]").locator(filled).first.wait_for()
         yield f"the dialog of {key}", "dialog[open]"

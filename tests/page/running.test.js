@@ -191,7 +191,10 @@ test("a place is named in the panel, and its name is a goal", () =>
 test("the help lists the keys by group, and a dialog takes them", () =>
   fresh(async (page) => {
     page.press("?");
-    await until("it is open", () => page.shown("#keys"));
+    await until("it is open", () => page.shown("#help-plates"));
+    assert.ok(page.text("#help-dialog").split("Keys")[0].trim().split(/\s+/).length <= 150);
+    await page.click(page.find("#help-dialog summary"));
+    assert.ok(page.shown("#keys"));
     const heads = page.all("#keys h4").map((head) => head.textContent);
     assert.deepEqual(heads, ["Robot", "Time", "Looking", "Presenter", "Page"]);
     const row = page.all("#keys li").find((one) => one.textContent.includes("kidnap"));
@@ -200,7 +203,7 @@ test("the help lists the keys by group, and a dialog takes them", () =>
     assert.equal((await state()).tick, 0);
     assert.ok(!page.text("#events").includes("kidnap"));
     page.press("?");
-    await until("it is closed", () => !page.shown("#keys"));
+    await until("it is closed", () => !page.shown("#help-plates"));
     page.press("k");
     await page.says("#events", "kidnap");
   }));

@@ -61,7 +61,7 @@ class ViewerLike(Protocol):
 class ViewersLike(Protocol):
     """A viewer for each look."""
 
-    def of(self, theme: Theme, large: bool = False) -> ViewerLike: ...  # takes a second; ConnectionError after `stop`
+    def of(self, theme: Theme, large: bool = False, still: bool = False) -> ViewerLike: ...  # ConnectionError: stopped
     def start(self) -> None: ...
     def stop(self) -> None: ...
     @property

@@ -27,7 +27,7 @@ from web.latest import Latest
 from web.messages import CameraAt, Command, Drawn, Drive, Inspect, SetGoal, Snapshot, StageClick
 from web.panel.panel import TABS, Panel, PanelReader
 from web.switches import NAMES, Switches
-from web.themes import THEMES, Themes
+from web.themes import THEMES, Theme, Themes
 from web.viewer.camera_views import Camera
 from web.viewer.picture import meant
 
@@ -46,11 +46,11 @@ class Stream:
 
     In: any command of `POST /api/commands` with an optional "id". Messages that concern this page alone, and the only ones of a
     page that only looks on: {"type": "view", "name"}; {"type": "follow", "on"}: its camera goes with the robot; {"type": "theme",
-    "name"}; {"type": "tabs", "names"}: the open tabs of the panel, since only those are sent; {"type": "camera", "name", "at"}:
-    where a camera had been turned from a view. {"type": "replay", "event"} plays the correction of a loop closure again, for all
-    pages of its theme. {"type": "click", "at", "shift", "drawn"}: on the plates, or on the drawing in their place; it does what a
-    pointer there means, and its answer says if not, and why. {"type": "switch", "name", "on"} concerns all pages, and {"type":
-    "present", "on"} those that only look on.
+    "name", "still"}, still: its reader wants little motion; {"type": "tabs", "names"}: the open tabs of the panel, since only
+    those are sent; {"type": "camera", "name", "at"}: where a camera had been turned from a view. {"type": "replay", "event"}
+    plays the correction of a loop closure again, for all pages of its look. {"type": "click", "at", "shift", "drawn"}: on the
+    plates, or on the drawing in their place; it does what a pointer there means, and its answer says if not, and why. {"type":
+    "switch", "name", "on"} concerns all pages, and {"type": "present", "on"} those that only look on.
     """
 
     def __init__(
@@ -199,7 +199,7 @@ class Stream:
         elif kind == "camera":
             client.background(self._cameras.turn(page, *_turned(document)))
         elif kind == "theme":
-            self._themes.choose(page, "light" if _choice(document, THEMES) == "light" else "dark")
+            self._themes.choose(page, *_theme(document))
         elif kind == "tabs":
             client.reader.tabs = _tabs(document)
             client.news.set()
@@ -319,6 +319,14 @@ def _choice(document: dict[str, Any], names: tuple[str, ...]) -> str:
             return name
     reason = f"{document['type']} takes name, one of: {', '.join(names)}"
     raise Malformed([wrong("name", document.get("name"), reason)])
+
+
+def _theme(document: dict[str, Any]) -> tuple[Theme, bool]:
+    """The theme, and whether little motion is wanted."""
+    still = document.pop("still", False)
+    if not isinstance(still, bool):
+        raise Malformed([wrong("still", still, "still is true or false")])
+    return "light" if _choice(document, THEMES) == "light" else "dark", still
 
 
 def _flag(document: dict[str, Any]) -> bool:

@@ -128,7 +128,7 @@ link.addEventListener("lost", () => {
   lostToast ??= toast("Connection lost. Trying again.", { bad: true, stays: true });
 });
 link.addEventListener("hello", () => {
-  link.send({ type: "theme", name: theme.name });
+  theme.tell();
   if (!lostToast) return;
   lostToast.remove();
   lostToast = null;

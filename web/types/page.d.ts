@@ -298,7 +298,7 @@ type PageMessage =
   | { type: "follow"; on: boolean }
   | { type: "replay"; event: number }
   | { type: "camera"; name: ViewName; at: CameraAt }
-  | { type: "theme"; name: Theme }
+  | { type: "theme"; name: Theme; still: boolean }
   | { type: "tabs"; names: string[] }
   | { type: "present"; on: boolean } // for those who look on
   | { type: "switch"; name: string; on: boolean }; // for all who look

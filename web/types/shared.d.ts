@@ -190,9 +190,11 @@ type IndexIds = {
   "goal": HTMLElementTagNameMap["p"];
   "grid": HTMLElementTagNameMap["select"];
   "help": HTMLElementTagNameMap["button"];
+  "help-acts": HTMLElementTagNameMap["ul"];
   "help-close": HTMLElementTagNameMap["button"];
   "help-dialog": HTMLElementTagNameMap["dialog"];
   "help-first": HTMLElementTagNameMap["button"];
+  "help-plates": HTMLElementTagNameMap["ol"];
   "help-title": HTMLElementTagNameMap["h2"];
   "keep": HTMLElementTagNameMap["details"];
   "keep-file": HTMLElementTagNameMap["button"];

@@ -26,6 +26,7 @@ from web.viewer.fits import (
 )
 from web.viewer.marks.judged import Doubt, Outline
 from web.viewer.marks.robot import GhostRobot
+from web.viewer.motion import Motion
 from web.viewer.plates.map_plate import MapPlate
 from web.viewer.plates.office_plate import OfficePlate
 from web.viewer.pointer import Pointer
@@ -40,11 +41,12 @@ class Layers:
     """All of one viewer. To be used in its thread only."""
 
     def __init__(
-        self, scenery: Scenery, beside: Beside, judged: JudgedLayers, replay: Replay, pointer: Pointer,
-        switches: Switches, post: Callable[[Callable[[], None]], None],
+        self, scenery: Scenery, beside: Beside, judged: JudgedLayers, replay: Replay, motion: Motion | None,
+        pointer: Pointer, switches: Switches, post: Callable[[Callable[[], None]], None],
     ) -> None:  # fmt: skip
-        """post: has something done in the viewer's thread."""
+        """post: has something done in the viewer's thread. motion: None: nothing moves by itself."""
         self._scenery, self._beside, self._judged, self._replay = scenery, beside, judged, replay
+        self._motion = motion
         self._pointer, self._switches = pointer, switches
         office, cells, map_plate = scenery.office, scenery.cells, scenery.map
         self._run = 0
@@ -104,7 +106,10 @@ class Layers:
             self._judged.forget()
         self._beside.draw(snapshot.beside, now_s, office=snapshot.world is not None)
         offer["living"].offer(now_s, snapshot.living)
-        if self._pointer.dragging:
+        if self._motion is not None:
+            self._motion.tell(snapshot, now_s)
+            self._motion.draw(now_s)
+        if self._pointer.dragging or (self._motion is not None and self._motion.lifts):
             self.forget("robot")  # when it is let go, it goes back to its true place
         else:
             offer["robot"].offer(now_s, snapshot.truth, snapshot.senses)

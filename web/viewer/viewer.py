@@ -1,7 +1,8 @@
 """The viewers: for each look one viser server on the loopback, and one thread that draws snapshots and handles the pointer.
 
 viser's callbacks only post to `_inbox`; everything that touches handles happens in that one thread. Every page is shown its own
-look: two themes, each also with large letters for those who present. All but the first are built when they are first needed.
+look: two themes, each also with large letters for those who present, and without motions of its own. All but the first are built
+when they are first needed.
 """
 
 from __future__ import annotations
@@ -24,6 +25,7 @@ from web.themes import Look, Theme
 from web.viewer.camera_views import VIEWS, Camera, ray_through
 from web.viewer.cameras import Cameras, Robots
 from web.viewer.layers import JudgedLayers, Layers
+from web.viewer.motion import Motion
 from web.viewer.pointer import NOT_THERE, OTHER_BRAIN, Answer, Click, Drag, Pointer, ask
 from web.viewer.primitives.palette import Palette, palette_of
 from web.viewer.replay import Replay
@@ -41,8 +43,9 @@ class Viewer:
 
     def __init__(
         self, latest: Latest[Snapshot], submit: Callable[[Command], Future[Accepted | Refused]], switches: Switches,
-        theme: Theme = "dark", large: bool = False,
+        theme: Theme = "dark", large: bool = False, still: bool = False,
     ) -> None:  # fmt: skip
+        """still: nothing moves but what the run moves, and cameras do not fly."""
         self.on_connect: Callable[[int], None] | None = None
         self.on_complaint: Callable[[int, str], None] | None = None
         self._latest, self._submit, self._switches = latest, submit, switches
@@ -55,6 +58,7 @@ class Viewer:
         self._cameras = Cameras(self.server, self._inbox.put)
         self._pointer = Pointer(self._send, self._complain)
         self._now_s = 0.0
+        self._still = still
         self._set_up(palette_of(theme, large))
         self.server.on_client_connect(self._connected)
         self.server.on_client_disconnect(self._disconnected)
@@ -87,7 +91,7 @@ class Viewer:
         turned: where the camera had been turned by hand from that view."""
         if view not in VIEWS:
             raise ValueError(f"unknown view {view!r}; expected one of: {', '.join(VIEWS)}")
-        now_s = None if at_once else time.monotonic()
+        now_s = None if at_once or self._still else time.monotonic()
         self._inbox.put(lambda: self._cameras.take_off(client_id, view, now_s, turned))
 
     def follow(self, client_id: int, on: bool) -> None:
@@ -160,8 +164,9 @@ class Viewer:
         office, map_plate = self._scenery.office, self._scenery.map
         judged = JudgedLayers(self.server.scene, palette, office, map_plate, self._switches)
         self._replay = Replay(map_plate)
+        motion = None if self._still else Motion(self._scenery, self._replay)
         self._layers = Layers(
-            self._scenery, self._beside, judged, self._replay, self._pointer, self._switches, self._inbox.put
+            self._scenery, self._beside, judged, self._replay, motion, self._pointer, self._switches, self._inbox.put
         )
         for part in office.robot.parts:
             part.on_drag("left")(self._dragged(False))
@@ -236,12 +241,12 @@ class Viewers:
         self.switches = Switches()  # one set for all pages, in all looks
         self.of("dark")  # at once: if viser is not available or cannot be guarded, that is said before the robot drives
 
-    def of(self, theme: Theme, large: bool = False) -> Viewer:
+    def of(self, theme: Theme, large: bool = False, still: bool = False) -> Viewer:
         """The viewer in a look; takes a second when it has to be built. Raises ConnectionError after `stop`."""
         with self._lock:
             if self._stopped:
                 raise ConnectionError("the viewers are closed")
-            look = Look(theme, large)
+            look = Look(theme, large, still)
             if look not in self._built:
                 self._built[look] = self._build(look)
             return self._built[look]

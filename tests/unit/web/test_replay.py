@@ -18,7 +18,7 @@ EVENT = 77
 
 def closing(time_s: float = 43.0) -> Snapshot:
     """Shortly after a loop was closed at the tenth experience, which moved half of the map."""
-    plain = replace(fake_snapshot(430), time_s=time_s)
+    plain = replace(fake_snapshot(430), time_s=time_s, speed=8.0)  # at which nothing moves by itself
     n = len(plain.map.xy) // 2
     after = plain.map.xy[:n].copy()
     before = after + np.linspace(0, 1.3, n)[:, None].astype(np.float32) * np.array([1, 0], np.float32)

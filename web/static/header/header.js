@@ -143,7 +143,13 @@ export class Theming {
     document.documentElement.dataset.theme = name;
     setIcon($("theme"), name === "dark" ? "sun" : "moon");
     $("theme").setAttribute("aria-label", name === "dark" ? "Light colours" : "Dark colours");
-    this.link.send({ type: "theme", name });
+    this.tell();
+  }
+
+  /** Shown are the plates of its theme, without motions of their own where the system asks for few. */
+  tell() {
+    const still = window.matchMedia("(prefers-reduced-motion: reduce)").matches;
+    this.link.send({ type: "theme", name: this.name, still });
   }
 
   toggle() {

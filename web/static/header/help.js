@@ -1,5 +1,5 @@
-// The help: what the plates show, and every key by group, written from the table by which the page acts. And the first visit: what
-// this is, and three things to do, ticked off as they happen. Put away, it stays away; the help brings it back.
+// The help: the three plates as they are now, and every key by group, written from the table by which the page acts. And the first
+// visit: what this is, and three things to do, ticked off as they happen. Put away, it stays away; the help brings it back.
 
 import { $, find, keep, kept, make, setIcon } from "../ui/elements.js";
 import { DRIVING, GROUPS, written } from "../ui/keys.js";
@@ -30,7 +30,16 @@ export class Help {
 
   toggle() {
     if (this.dialog.open) this.dialog.close();
-    else this.dialog.showModal();
+    else this.show();
+  }
+
+  show() {
+    const theme = document.documentElement.dataset.theme ?? "dark";
+    for (const picture of this.dialog.querySelectorAll("img")) {
+      picture.onerror = () => picture.remove(); // before the first tick there is none
+      picture.src = `/api/picture/${picture.dataset.plate}?theme=${theme}`;
+    }
+    this.dialog.showModal();
   }
 }
 

@@ -1,0 +1,68 @@
+"""What moves by itself, so that one sees why; it ends by itself, and a still viewer has none of it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tests.fake_snapshots import fake_snapshot
+from tests.unit.web.bench import Bench
+from tests.unit.web.test_replay import closing, runs
+from web.messages import Snapshot
+from web.viewer.camera_views import MAP_AT
+from web.viewer.motion import LIFT_S, RUN_S
+
+pytestmark = pytest.mark.slow
+
+
+def at_speed(snapshot: Snapshot, speed: float) -> Snapshot:
+    return replace(snapshot, running=True, speed=speed)
+
+
+@pytest.mark.parametrize(("speed", "plays"), [(1.0, True), (8.0, False), (0.0, False)])
+def test_a_new_correction_is_played_once_at_a_speed_at_which_one_watches(
+    stage: Bench, speed: float, plays: bool
+) -> None:
+    snapshot = at_speed(closing(), speed)
+    stage.show(replace(snapshot, closures=()), 10.0)
+    stage.show(replace(snapshot, tick=snapshot.tick + 1), 0.1)
+    stage.show(replace(snapshot, tick=snapshot.tick + 2), 2.0)
+    assert runs(stage) == plays
+    stage.show(replace(snapshot, tick=snapshot.tick + 3), 10.0)
+    stage.show(replace(snapshot, tick=snapshot.tick + 4), 2.0)
+    assert not runs(stage)
+
+
+def test_a_robot_that_is_carried_is_seen_to_be_lifted_and_put_down(stage: Bench) -> None:
+    here = at_speed(fake_snapshot(430), 1.0)
+    assert here.truth is not None
+    stage.show(here, 10.0)
+    stage.show(here, 1.0)
+    start = np.array(stage.at("/office/robot"))
+    there = replace(here, tick=here.tick + 1, truth=replace(here.truth, x=here.truth.x + 2.5))
+    stage.show(there, 0.1)
+    stage.show(there, LIFT_S / 2)
+    between = np.array(stage.at("/office/robot"))
+    assert between[2] > 1.0
+    stage.show(there, LIFT_S)
+    stage.show(there, 1.0)
+    end = np.array(stage.at("/office/robot"))
+    assert start[0] < between[0] < end[0]
+    assert start[2] == end[2] == 0.0
+
+
+def test_a_dot_runs_along_a_new_route_to_its_goal(stage: Bench) -> None:
+    plain = fake_snapshot(430)
+    assert plain.goal is not None
+    stage.show(replace(plain, goal=None), 10.0)
+    stage.show(replace(plain, tick=plain.tick + 1), 0.1)
+    seen = []
+    for _ in range(4):
+        stage.show(replace(plain, tick=plain.tick + 1), RUN_S / 4)
+        seen.append(np.array(stage.at("/map/runner")[:2]))
+    way = stage.on_map(np.asarray(plain.goal.route_xy)) + MAP_AT
+    assert np.hypot(*(way[-1] - seen[-1])) < 0.05 < np.hypot(*(way[-1] - seen[0]))
+    stage.show(replace(plain, tick=plain.tick + 2), 0.5)
+    assert not stage.visible("/map/runner")

@@ -1,0 +1,110 @@
+"""What moves by itself, once, so that one sees why: a correction is played slowly, a robot that is carried is lifted, and a dot
+runs along a new route. A page whose reader wants little motion is shown a viewer without.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from web.messages import Snapshot
+from web.viewer.primitives import meshes
+from web.viewer.primitives.labels import add_mesh
+from web.viewer.replay import Replay
+from web.viewer.scenery import Scenery
+
+QUICKEST = 2.0  # times real time: who runs faster does not look for single events
+LEAST_BEND_M = 0.15  # a smaller correction is not seen on the plate
+JUMP_M = 0.6  # more than it drives between two snapshots at that speed
+LIFT_S, LIFT_Z = 0.9, 1.6
+RUN_S, RUN_Z = 1.1, 0.24
+
+Points = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class _Way:
+    """points: (n, 2) on a plate."""
+
+    points: Points
+    began_s: float
+    lasts_s: float
+
+    def at(self, now_s: float) -> tuple[Points, float]:
+        """Where on the way, slow at both ends, and which share of the time has passed."""
+        share = min(max((now_s - self.began_s) / self.lasts_s, 0.0), 1.0)
+        along: Points = np.zeros(len(self.points))
+        along[1:] = np.cumsum(np.linalg.norm(np.diff(self.points, axis=0), axis=1))
+        far = float(along[-1]) * share * share * (3 - 2 * share)
+        x, y = (float(np.interp(far, along, self.points[:, k])) for k in (0, 1))
+        return np.array([x, y]), share
+
+
+class Motion:
+    """Used in the viewer's thread. `tell` takes each snapshot, `draw` moves what is under way."""
+
+    def __init__(self, scenery: Scenery, replay: Replay) -> None:
+        self._office, self._map, self._replay = scenery.office, scenery.map, replay
+        self._last: Snapshot | None = None
+        self._lift: _Way | None = None
+        self._run: _Way | None = None
+        self._awaited: tuple[float, float] | None = None  # a new goal whose route has not come yet
+        palette = self._map.palette
+        disc = meshes.flat_polygon(meshes.circle(0.3), RUN_Z)
+        self._dot = add_mesh(
+            self._map.scene, f"{self._map.root}/runner", disc, palette.lit(palette.goal), visible=False
+        )
+
+    @property
+    def lifts(self) -> bool:
+        """The robot is in the air: it is not drawn where it is."""
+        return self._lift is not None
+
+    def tell(self, now: Snapshot, now_s: float) -> None:
+        """What is new since the last snapshot begins to move."""
+        last, self._last = self._last, now
+        if last is None or last is now or last.run != now.run or now.tick < last.tick:
+            return
+        self._await_route(last, now, now_s)
+        if now.sought(last) or not 0 < now.speed <= QUICKEST:
+            return
+        if last.truth is not None and now.truth is not None:
+            jump_m = math.hypot(now.truth.x - last.truth.x, now.truth.y - last.truth.y)
+            if jump_m > JUMP_M:
+                self._carry(now, now_s)
+        new = now.closures[-1] if now.closures else None
+        if now.running and new and new not in last.closures and new.moved_m >= LEAST_BEND_M and not self._replay.runs:
+            self._replay.start(new, now_s)
+
+    def _await_route(self, last: Snapshot, now: Snapshot, now_s: float) -> None:
+        before, goal = last.goal, now.goal
+        if goal is None:
+            self._awaited = None
+        elif before is None or (before.x, before.y) != (goal.x, goal.y):
+            self._awaited = goal.x, goal.y
+        if self._awaited is not None and goal is not None and len(goal.route_xy) > 1:
+            self._awaited = None
+            self._run = _Way(self._map.fit.to_plate(np.asarray(goal.route_xy, np.float64)), now_s, RUN_S)
+
+    def _carry(self, now: Snapshot, now_s: float) -> None:
+        assert now.truth is not None
+        start = np.array(self._office.robot.frame.position[:2])
+        end = self._office.fit.to_plate(np.array([[now.truth.x, now.truth.y]]))[0]
+        if np.hypot(*(end - start)) > self._office.robot.radius:  # whoever dragged it has let it go there
+            self._lift = _Way(np.stack([start, end]), now_s, LIFT_S)
+
+    def draw(self, now_s: float) -> None:
+        if self._run is not None:
+            at, share = self._run.at(now_s)
+            self._dot.position = (float(at[0]), float(at[1]), 0.0)
+            self._dot.visible = share < 1
+            self._run = self._run if share < 1 else None
+        if self._lift is None:
+            return
+        at, share = self._lift.at(now_s)
+        frame = self._office.robot.frame
+        frame.position = (float(at[0]), float(at[1]), LIFT_Z * math.sin(math.pi * share) if share < 1 else 0.0)
+        self._lift = self._lift if share < 1 else None
