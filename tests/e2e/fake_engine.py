@@ -136,10 +136,13 @@ class FakeViewer:
     def press(self, _client_id: int, _at: object, _inspecting: bool, tell: Callable[[str | None], None]) -> None:
         tell(None)
 
+    def hover(self, _client_id: int, _at: object, tell: Callable[[str], None]) -> None:
+        tell("")
+
     def turned(self, _client_id: int) -> Camera | None:
         return None
 
-    def of(self, _theme: Theme, _large: bool = False) -> FakeViewer:
+    def of(self, _theme: Theme, _large: bool = False, _still: bool = False) -> FakeViewer:
         return self
 
 

@@ -55,6 +55,8 @@ class ViewerLike(Protocol):
     def press(
         self, client_id: int, at: tuple[float, float], inspecting: bool, on_answer: Callable[[str | None], None]
     ) -> None: ...  # calls `on_answer` once, from a thread of its own: None, or why nothing came of the click
+    # Calls `on_words` once, from a thread of its own: what a click there would do.
+    def hover(self, client_id: int, at: tuple[float, float], on_words: Callable[[str], None]) -> None: ...
     def turned(self, client_id: int) -> Camera | None: ...  # where somebody has turned this camera by hand
 
 
@@ -112,20 +114,16 @@ class Cameras:
         """A click on what this page's camera shows: why nothing came of it, None when it was carried out."""
         if page not in self._client_of:
             return NOT_THERE
-        loop = asyncio.get_running_loop()
-        said: asyncio.Future[str | None] = loop.create_future()
-
-        def settle(why: str | None) -> None:
-            if not said.done():
-                said.set_result(why)
-
         viewer, client_id = self._client_of[page]
-        viewer.press(client_id, at, inspecting, lambda why: _call(loop, settle, why))
-        try:
-            async with asyncio.timeout(CLICK_S):
-                return await said
-        except TimeoutError:
-            return f"The click was not answered within {CLICK_S:g} s; it may still take effect"
+        late = f"The click was not answered within {CLICK_S:g} s; it may still take effect"
+        return await _said(lambda tell: viewer.press(client_id, at, inspecting, tell), late)
+
+    async def hover(self, page: str, at: tuple[float, float]) -> str:
+        """What a click there would do, in words; empty where it does nothing, or when nobody answers in time."""
+        if page not in self._client_of:
+            return ""
+        viewer, client_id = self._client_of[page]
+        return await _said(lambda tell: viewer.hover(client_id, at, tell), "") or ""
 
     async def turn(self, page: str, view: str, camera: Camera) -> None:
         """Fly this page's camera to where it had been turned from a view; remembered as in `show`."""
@@ -195,6 +193,23 @@ def _remember(kept: dict[str, Any], page: str, what: object) -> None:
     kept[page] = what
     if len(kept) > 2 * MOST_CLIENTS:
         del kept[next(iter(kept))]  # that of the page that has been quiet for longest
+
+
+async def _said(ask: Callable[[Callable[[str | None], None]], None], late: str) -> str | None:
+    """What `ask` is told, once, from another thread; `late` when that takes too long."""
+    loop = asyncio.get_running_loop()
+    said: asyncio.Future[str | None] = loop.create_future()
+
+    def settle(words: str | None) -> None:
+        if not said.done():
+            said.set_result(words)
+
+    ask(lambda words: _call(loop, settle, words))
+    try:
+        async with asyncio.timeout(CLICK_S):
+            return await said
+    except TimeoutError:
+        return late
 
 
 class ViserProxy:

@@ -206,10 +206,10 @@ class Bucket:
 
 
 class Limits:
-    """One sender's limits: drive, seek and vote 60 a second each, all other commands 10 a second."""
+    """One sender's limits: drive, seek, vote and hover 60 a second each, all other commands 10 a second."""
 
     def __init__(self) -> None:
-        self._often = {"drive": Bucket(60.0), "seek": Bucket(60.0), "vote": Bucket(60.0)}
+        self._often = {"drive": Bucket(60.0), "seek": Bucket(60.0), "vote": Bucket(60.0), "hover": Bucket(60.0)}
         self._other = Bucket(10.0)
 
     def refusal(self, kind: str) -> str | None:

@@ -50,7 +50,8 @@ class Stream:
     those are sent; {"type": "camera", "name", "at"}: where a camera had been turned from a view. {"type": "replay", "event"}
     plays the correction of a loop closure again, for all pages of its look. {"type": "click", "at", "shift", "drawn"}: on the
     plates, or on the drawing in their place; it does what a pointer there means, and its answer says if not, and why. {"type":
-    "switch", "name", "on"} concerns all pages, and {"type": "present", "on"} those that only look on.
+    "hover", "at"} is answered by {"type": "hint", "words"}: what a click there would do. {"type": "switch", "name", "on"}
+    concerns all pages, and {"type": "present", "on"} those that only look on.
     """
 
     def __init__(
@@ -178,6 +179,8 @@ class Stream:
             must_look(kind)
         if kind == "click":
             client.background(self._click(client, document, identity))
+        elif kind == "hover":
+            client.background(self._hover(client, document))
         elif self._page_says(client, kind, document):
             await self._confirm(client, identity)
         else:
@@ -242,6 +245,12 @@ class Stream:
             await self._confirm(client, identity)
         else:
             await client.send(_answer(identity, Declined.of(422, why)))
+
+    async def _hover(self, client: Client, document: dict[str, Any]) -> None:
+        """The page points there. What is no place has no meaning."""
+        with contextlib.suppress(ValidationError):
+            words = await self._cameras.hover(client.page, StageClick.model_validate(document).at)
+            await client.send(_text({"type": "hint", "words": words}))
 
     def _meant(self, click: StageClick, drawn: Drawn) -> SetGoal | Inspect | str:
         _, snapshot = self._latest.get()

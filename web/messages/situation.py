@@ -45,7 +45,7 @@ class StageClick(BaseModel):
     """A click on the stage: where on what the page shows, from its middle to the right and upwards, in halves of its height."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
-    type: Literal["click"]
+    type: Literal["click", "hover"]  # hover: only points there
     at: tuple[Number, Number]
     shift: bool = False
     drawn: Drawn | None = None  # None: viser's picture

@@ -299,6 +299,7 @@ type PageMessage =
   | { type: "replay"; event: number }
   | { type: "camera"; name: ViewName; at: CameraAt }
   | { type: "theme"; name: Theme; still: boolean }
+  | { type: "hover"; at: Point }
   | { type: "tabs"; names: string[] }
   | { type: "present"; on: boolean } // for those who look on
   | { type: "switch"; name: string; on: boolean }; // for all who look

@@ -196,6 +196,7 @@ type IndexIds = {
   "help-first": HTMLElementTagNameMap["button"];
   "help-plates": HTMLElementTagNameMap["ol"];
   "help-title": HTMLElementTagNameMap["h2"];
+  "hover": HTMLElementTagNameMap["span"];
   "keep": HTMLElementTagNameMap["details"];
   "keep-file": HTMLElementTagNameMap["button"];
   "keep-film": HTMLElementTagNameMap["button"];

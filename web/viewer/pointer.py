@@ -44,6 +44,14 @@ class Click:
 
 
 @dataclass(frozen=True)
+class Meaning:
+    """What a click at a place would do. words: for who points there, empty where it does nothing."""
+
+    words: str
+    act: Callable[[], None]
+
+
+@dataclass(frozen=True)
 class Drag:
     client_id: int
     phase: Literal["start", "update", "end"]
@@ -61,35 +69,40 @@ class Pointer:
         self._asked: tuple[tuple[float, float], float, int | None] | None = None  # place, time, tick of acceptance
         self.dragging = False
 
-    def click(
+    def meant(
         self, click: Click, plate: MapPlate, now_s: float, office: OfficePlate, places: tuple[KnownPlace, ...] = ()
-    ) -> None:
+    ) -> Meaning:
         """A click on the map shows the marker at once and asks for the goal. A click on a door opens or shuts it, one on the
         name of a place asks for the way there."""
         name = self._name_at(click, office) or self._name_at(click, plate)
         if name is not None:
-            self._go_to(name, places, click, plate, now_s)
-            return
-        if self._click_door(click, office):
-            return
+            return self._way_to(name, places, click, plate, now_s)
+        door = self._door_at(click, office)
+        if door is not None:
+            words = f"Click: {'open' if door.open else 'shut'} the door"
+            return Meaning(
+                words, lambda: self._send(door, lambda said: click.answered(said, "The door stays as it is"))
+            )
         on_plate = point_on_plane(np.array(click.origin), np.array(click.direction), plate.origin, NODE_Z)
         place = None if on_plate is None else plate.map_place(on_plate)
         if place is None:
-            click.on_answer(BESIDE_MAP if on_plate is not None and on_sheet(on_plate) else NOTHING_THERE)
-            return
-        self._ask(place, click, plate, now_s)
+            why = BESIDE_MAP if on_plate is not None and on_sheet(on_plate) else NOTHING_THERE
+            return Meaning("", lambda: click.on_answer(why))
+        return Meaning("Click: the robot goes there", lambda: self._ask(place, click, plate, now_s))
 
     def _name_at(self, click: Click, plate: MapPlate | OfficePlate) -> str | None:
         at = point_on_plane(np.array(click.origin), np.array(click.direction), plate.origin, NAMES_Z)
         return None if at is None or not plate.frame.visible else plate.names.at(at)
 
-    def _go_to(self, name: str, places: tuple[KnownPlace, ...], click: Click, plate: MapPlate, now_s: float) -> None:
+    def _way_to(
+        self, name: str, places: tuple[KnownPlace, ...], click: Click, plate: MapPlate, now_s: float
+    ) -> Meaning:
         """The place of the map that is known by this name becomes the goal."""
         known = next((place.map_xy for place in places if place.name == name), None)
         if known is None:
-            click.on_answer(f"No goal set: the map does not know the {name}: the robot has not been there")
-            return
-        self._ask(known, click, plate, now_s)
+            why = f"the map does not know the {name}: the robot has not been there"
+            return Meaning(why[0].upper() + why[1:], lambda: click.on_answer(f"No goal set: {why}"))
+        return Meaning(f"Click: the robot goes to the {name}", lambda: self._ask(known, click, plate, now_s))
 
     def _ask(self, place: tuple[float, float], click: Click, plate: MapPlate, now_s: float) -> None:
         self._asked = (place, now_s, None)
@@ -104,15 +117,11 @@ class Pointer:
 
         self._send(SetGoal(type="set_goal", x=place[0], y=place[1]), answered)
 
-    def _click_door(self, click: Click, office: OfficePlate) -> bool:
+    def _door_at(self, click: Click, office: OfficePlate) -> SetDoor | None:
         origin, direction = np.array(click.origin), np.array(click.direction)
         at = point_on_plane(origin, direction, office.origin, DOOR_Z * office.fit.relief)
         door = None if at is None else office.things.door_at(at, office.fit)
-        if door is None:
-            return False
-        order = SetDoor(type="set_door", name=door[0], open=door[1])
-        self._send(order, lambda answer: click.answered(answer, "The door stays as it is"))
-        return True
+        return None if door is None else SetDoor(type="set_door", name=door[0], open=door[1])
 
     def experience_at(self, click: Click, plate: MapPlate) -> int | None:
         """The experience that a click on the map means, None for none."""

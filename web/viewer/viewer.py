@@ -13,20 +13,21 @@ import threading
 import time
 from collections.abc import Callable, Coroutine
 from concurrent.futures import Future
+from functools import partial
 from typing import Any
 
 import numpy as np
 import viser
 
 from web.latest import Latest
-from web.messages import Accepted, Command, Refused, Snapshot
+from web.messages import Accepted, Closure, Command, Refused, Snapshot
 from web.switches import Switches
 from web.themes import Look, Theme
 from web.viewer.camera_views import VIEWS, Camera, ray_through
 from web.viewer.cameras import Cameras, Robots
 from web.viewer.layers import JudgedLayers, Layers
 from web.viewer.motion import Motion
-from web.viewer.pointer import NOT_THERE, OTHER_BRAIN, Answer, Click, Drag, Pointer, ask
+from web.viewer.pointer import NOT_THERE, OTHER_BRAIN, Answer, Click, Drag, Meaning, Pointer, ask
 from web.viewer.primitives.palette import Palette, palette_of
 from web.viewer.replay import Replay
 from web.viewer.scenery import Beside, Scenery
@@ -116,6 +117,18 @@ class Viewer:
 
         self._inbox.put(pressed)
 
+    def hover(self, client_id: int, at: tuple[float, float], on_words: Callable[[str], None]) -> None:
+        """Somebody points there: what a click would do, in words; empty where it does nothing."""
+
+        def pointed() -> None:
+            camera = self._cameras.standing(client_id)
+            if camera is None:
+                on_words("")
+            else:
+                on_words(self.meaning(Click(*ray_through(camera, at), lambda _: None), False).words)
+
+        self._inbox.put(pointed)
+
     def click(self, click: Click, inspecting: bool = False) -> None:
         """Somebody has clicked on the plates. inspecting: with shift."""
         self._inbox.put(lambda: self._click(click, inspecting))
@@ -186,25 +199,34 @@ class Viewer:
         self._inbox.put(lambda: self._cameras.farewell(client.client_id))
 
     def _click(self, click: Click, inspecting: bool) -> None:
+        self.meaning(click, inspecting).act()
+
+    def meaning(self, click: Click, inspecting: bool) -> Meaning:
+        """Of the first of all that may lie there. In the viewer's thread."""
         lesson = None if self._snapshot is None or inspecting else self._snapshot.lesson
         predicted = self._scenery.lesson.predicted(lesson, click.origin, click.direction)
         if predicted is not None:
-            self._send(predicted, lambda answer: click.answered(answer, "Nothing predicted"))
-            return
+            answered = partial(click.answered, title="Nothing predicted")
+            return Meaning("Click: predict this", lambda: self._send(predicted, answered))
         if self._beside.holds(click.origin, click.direction):
-            click.on_answer(OTHER_BRAIN)
-            return
+            return Meaning("", lambda: click.on_answer(OTHER_BRAIN))
         column = self._scenery.cells.column_at(np.array(click.origin), np.array(click.direction))
         if column is not None:
-            self._pointer.inspect(click, x=column[0], y=column[1])
-        elif not inspecting and (closure := self._pointer.closure_at(click, self._scenery.map)) is not None:
-            self._replay.start(closure, self._now_s)
-            click.on_answer(None)
-        elif inspecting or self._switches.is_on("click_inspects"):
-            self._pointer.inspect(click, experience=self._pointer.experience_at(click, self._scenery.map))
-        else:
-            places = self._snapshot.places if self._snapshot is not None else ()
-            self._pointer.click(click, self._scenery.map, self._now_s, self._scenery.office, places)
+            return Meaning(
+                "Click: inspect these pose cells", lambda: self._pointer.inspect(click, x=column[0], y=column[1])
+            )
+        if not inspecting and (closure := self._pointer.closure_at(click, self._scenery.map)) is not None:
+            return Meaning("Click: see this correction again", lambda: self._see(closure, click))
+        if inspecting or self._switches.is_on("click_inspects"):
+            found = self._pointer.experience_at(click, self._scenery.map)
+            words = "" if found is None else f"Click: inspect experience {found}"
+            return Meaning(words, lambda: self._pointer.inspect(click, experience=found))
+        places = self._snapshot.places if self._snapshot is not None else ()
+        return self._pointer.meant(click, self._scenery.map, self._now_s, self._scenery.office, places)
+
+    def _see(self, closure: Closure, click: Click) -> None:
+        self._replay.start(closure, self._now_s)
+        click.on_answer(None)
 
     def _robots(self) -> Robots:
         return {} if self._snapshot is None else self._scenery.robots(self._snapshot)

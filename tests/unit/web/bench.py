@@ -121,10 +121,17 @@ class Bench:
 
     # ------------------------------------------------------------ what people do
 
-    def click(self, at: tuple[float, float, float], shift: bool = False) -> None:
-        """A click from above, slightly slanted, at a place of the scene; then one round."""
+    def _towards(self, at: tuple[float, float, float]) -> Click:
+        """From above, slightly slanted, at a place of the scene."""
         aim, eye = np.array(at), np.array([2.0, -20.0, 25.0])
-        self.viewer.click(Click(tuple(eye), tuple(aim - eye), self.told.append), shift)
+        return Click(tuple(eye), tuple(aim - eye), self.told.append)
+
+    def click(self, at: tuple[float, float, float], shift: bool = False) -> None:
+        self.viewer.click(self._towards(at), shift)
+
+    def meaning(self, at: tuple[float, float, float]) -> str:
+        """What a click there would do."""
+        return self.viewer.meaning(self._towards(at), False).words
 
     def drag(self, at: tuple[float, float, float], phase: Any, turning: bool = False) -> None:
         """Drag with the pointer over a place of the scene."""

@@ -80,6 +80,9 @@ class StubViewer:
         if self.comes_of_clicks:
             on_answer(self.comes_of_clicks.pop(0))
 
+    def hover(self, client_id: int, at: tuple[float, float], on_words: Callable[[str], None]) -> None:
+        on_words(f"client {client_id} points at {at}")
+
     def turned(self, client_id: int) -> Camera | None:
         return self.cameras.get(client_id)
 
@@ -93,7 +96,7 @@ class StubViewers:
         self.switches = Switches()
         self.calls: list[str] = []
 
-    def of(self, theme: str, _large: bool = False) -> StubViewer:
+    def of(self, theme: str, _large: bool = False, _still: bool = False) -> StubViewer:
         return {"dark": self.dark, "light": self.light}[theme]
 
     def start(self) -> None:

@@ -201,3 +201,20 @@ def test_a_broken_answer_is_a_refusal() -> None:
         ask(lambda _command, future=future: future, SetGoal(type="set_goal", x=0, y=0), got.append)
         spoil(future)
     assert [answer.reason for answer in got if isinstance(answer, Refused)] == ["engine gone", "the session has ended"]
+
+
+def test_who_points_is_told_what_a_click_does_and_a_click_does_that(stage: Bench) -> None:
+    x, y = PLAIN.map.xy[0].tolist()
+    node = stage.on_map(np.array([[x, y]]))[0]
+    places = {
+        "Click: the robot goes there": (MAP_AT[0] + float(node[0]), MAP_AT[1] + float(node[1]), NODE_Z),
+        "Click: inspect these pose cells": (CELLS_AT[0] - 3.5, CELLS_AT[1] - 3.5, 0.0),
+        "": (MAP_AT[0] - 5.85, MAP_AT[1], 0.0),
+    }
+    for words, place in places.items():
+        stage.engine.commands.clear()
+        assert stage.meaning(place) == words
+        assert not stage.engine.commands  # pointing changes nothing
+        stage.click(place)
+        stage.show(None, 0.05)
+        assert bool(stage.engine.commands) == bool(words)

@@ -216,6 +216,15 @@ def test_a_click_on_the_stage_is_answered(behind: Behind, monkeypatch: pytest.Mo
         assert "Input should be" in said(5, at="here")
 
 
+def test_what_a_click_would_do_is_told_to_the_page_that_points(behind: Behind) -> None:
+    server, _ = behind
+    with server.stream() as stream, connect(server) as socket:
+        echoed(socket)
+        for at in ("nowhere", [0.5, 0.25]):
+            stream.send_text(orjson.dumps({"type": "hover", "at": at}).decode())
+        assert until(stream, "hint")["words"] == "client 0 points at (0.5, 0.25)"
+
+
 def test_a_click_on_the_drawing_is_one_on_the_map(behind: Behind) -> None:
     server, _ = behind
     snapshot, drawn = fake_snapshot(12), {"view": "map", "aspect": 1.5}

@@ -1,7 +1,7 @@
 // The plates in 3-D: viser's client in a frame of our own origin, and the view buttons. The frame belongs to one program and one
 // graphics context; when either is another, it is thrown away and built anew. While it has drawn nothing, the drawing stands there.
 
-import { $, find } from "../ui/elements.js";
+import { $, find, say } from "../ui/elements.js";
 import { toast } from "../ui/words.js";
 import {
   dismissSlowNotice,
@@ -14,6 +14,7 @@ import {
   restBetweenFrames,
   spareSoftware,
   takeClicks,
+  takeHovers,
   takePinches,
   whoDraws,
 } from "./viser_client.js";
@@ -53,6 +54,7 @@ export class Viewer extends EventTarget {
     this.frame.addEventListener("load", () => this.loaded());
     this.build();
     link.on("hello", (/** @type {{ launch: number | string }} */ detail) => this.hello(detail));
+    link.on("hint", (/** @type {{ words: string }} */ { words }) => this.hint(words));
   }
 
   build() {
@@ -103,6 +105,20 @@ export class Viewer extends EventTarget {
       toast("The click did not arrive: the connection is lost. Click again.", { bad: true });
   }
 
+  /** What a click there would do is told beneath the stage. @param {Point | null} at */
+  hover(at) {
+    if (at) this.link.send({ type: "hover", at });
+    else this.hint("");
+  }
+
+  /** @param {string} words */
+  hint(words) {
+    $("hover").hidden = !words;
+    say($("hover"), words);
+    const paper = this.frame.contentDocument;
+    if (paper) paper.documentElement.style.cursor = words ? "pointer" : "";
+  }
+
   // A program that has started anew knows no view. After a mere loss of the connection, it still shows the same one.
   /** @param {{ launch: number | string }} hello */
   hello({ launch }) {
@@ -127,7 +143,10 @@ export class Viewer extends EventTarget {
     const wake = restBetweenFrames(inside, () => !editor.hidden, this.soft ? spareSoftware(inside) : () => null);
     new MutationObserver(wake).observe(editor, { attributeFilter: ["hidden"] });
     takePinches(inside);
-    if (!this.link.watches) takeClicks(inside, (at, shift) => this.click(at, shift));
+    if (!this.link.watches) {
+      takeClicks(inside, (at, shift) => this.click(at, shift));
+      takeHovers(inside, (at) => this.hover(at));
+    }
     this.keys.listen(inside);
     this.dispatchEvent(new Event("inside"));
     hushPresses(inside);

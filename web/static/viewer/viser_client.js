@@ -224,6 +224,34 @@ export function takeClicks(inside, click) {
   inside.addEventListener("pointercancel", () => (press = null), true);
 }
 
+const REST_MS = 110; // between two messages of where the mouse is
+
+/**
+ * Tells where the mouse points, as a click would; null: no longer. A finger points at nothing.
+ * @param {Window & typeof globalThis} inside @param {(at: Point | null) => void} point
+ */
+export function takeHovers(inside, point) {
+  let next_ms = 0;
+  /** @type {ReturnType<typeof setTimeout> | undefined} */
+  let later;
+  const at = (/** @type {PointerEvent} */ { target, clientX, clientY }) => {
+    const { left, top, width, height } = /** @type {Element} */ (target).getBoundingClientRect();
+    point([(clientX - left - width / 2) / (height / 2), (top + height / 2 - clientY) / (height / 2)]);
+    next_ms = performance.now() + REST_MS;
+  };
+  const move = (/** @type {PointerEvent} */ event) => {
+    clearTimeout(later);
+    const points = event.pointerType === "mouse" && event.buttons === 0;
+    if (!points || /** @type {Element} */ (event.target).tagName !== "CANVAS") return;
+    later = setTimeout(() => at(event), Math.max(0, next_ms - performance.now()));
+  };
+  inside.addEventListener("pointermove", move, true);
+  inside.document.documentElement.addEventListener("pointerleave", () => {
+    clearTimeout(later);
+    point(null);
+  });
+}
+
 /**
  * A pinch. viser's own hardly moves (fingers four times as far apart: 15 % nearer), takes a resting thumb for a click, and a thumb
  * on the robot for a drag. So the second finger ends what the first one began, and the camera is set here, until the last finger
