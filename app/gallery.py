@@ -293,6 +293,7 @@ class StoredLessons:
         return LessonText(
             card=_card(number + 1, lesson, own),
             text=lesson.text.strip(),
+            more=lesson.more,
             formulas=[_typeset(formula, values) for formula in lesson.formulas],
             world=open_world(scene.world).title,
             engine=scene.engine,

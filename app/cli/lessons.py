@@ -51,6 +51,7 @@ def _list() -> int:
 def _check(path: Path) -> int:
     from app.gallery import check_formulas
     from app.protocol.lesson import check_lesson, read_lesson
+    from app.protocol.lesson_card import wordy_states
 
     lesson = read_lesson(path)
     try:
@@ -60,6 +61,8 @@ def _check(path: Path) -> int:
         raise ValueError(f"{path}: {error}") from None
     command = shlex.join(["ratslam", "lessons", "--run", str(path)])
     print(f"{path}: {lesson.title}: all is right; `{command}` tells whether it keeps what it promises")
+    for words in wordy_states(lesson):
+        print(f"{path}: {words}")
     return 0
 
 

@@ -262,7 +262,8 @@ class Try(Part):
 
 
 class Lesson(Part):
-    """One idea. `outcome` tells what happened; {NAME} in it is what was measured, {NAME of LABEL} that of a round."""
+    """One idea. `outcome` tells what happened; {NAME} in it is what was measured, {NAME of LABEL} that of a round. `text`, the
+    paper's passage, and `more`, what else is known of the outcome, unfold."""
 
     name: Annotated[str, Field(pattern=r"^[a-z0-9][a-z0-9-]{0,39}$")]
     title: Line
@@ -276,6 +277,7 @@ class Lesson(Part):
     show: Show
     outcome: Text
     because: Text
+    more: Text | None = None
     watch: list[Look] = []
     promise: Annotated[list[Promise], Field(min_length=1)]
     sandbox: list[Try] = []

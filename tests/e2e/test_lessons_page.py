@@ -1,16 +1,28 @@
-"""Where a lesson's answer is drawn: on the plan, and on the map. All else of lessons is in tests/page."""
+"""Where a lesson's answer is drawn: on the plan, and on the map; and that the card shows no more words than are counted. All else
+of lessons is in tests/page."""
 
 from __future__ import annotations
 
 import math
 
 import pytest
-from playwright.sync_api import Browser, expect
+from playwright.sync_api import Browser, Page, expect
 
+from app.protocol.lesson import find_lesson
+from app.protocol.lesson_card import count_words, words_in_sight
 from tests.e2e.browser import box_of, open_page, until
 from tests.e2e.program import Program
 
+TEXTS = """() => { const texts = [], walk = document.createTreeWalker(document.getElementById("lesson"), NodeFilter.SHOW_TEXT);
+    while (walk.nextNode()) if (walk.currentNode.parentElement.checkVisibility()) texts.push(walk.currentNode.data);
+    return texts; }"""
 DRAWN = "(part) => document.querySelector(`.lesson-plan .${part}`)?.getAttribute('d')?.length > 40"
+
+
+def is_in(page: Page, name: str, state: str) -> None:
+    expect(page.locator("#lesson")).to_have_attribute("data-state", state)
+    shown = page.evaluate(TEXTS)
+    assert 10 < count_words(shown) <= words_in_sight(find_lesson(name))[state], shown
 
 
 @pytest.mark.long
@@ -20,10 +32,11 @@ def test_where_it_will_be_is_drawn_on_the_plan_and_on_the_map_which_lies_as_on_i
 ) -> None:
     on_map = name == "believes"
     with open_page(browser, program.url, stage=False) as page:
-        lesson, plan = page.locator("#lesson"), page.locator(".lesson-plan")
+        plan = page.locator(".lesson-plan")
         page.goto(f"{program.url}docs")
         page.goto(f"{program.url}#lesson={name}")
-        expect(lesson).to_have_attribute("data-state", "predict")
+        expect(page.locator("#lesson-title")).to_have_text(find_lesson(name).title)
+        is_in(page, name, "predict")
         assert "#" not in page.url  # loaded again, the page begins nothing
         for part in ("walls", "places") if on_map else ("walls",):
             until(page, DRAWN, argument=part)
@@ -43,8 +56,9 @@ def test_where_it_will_be_is_drawn_on_the_plan_and_on_the_map_which_lies_as_on_i
         moved_rad = math.atan2(then["y"] - first["y"], then["x"] - first["x"]) + turn_rad
         assert math.remainder(moved_rad - math.pi / 2, math.tau) == pytest.approx(0, abs=0.01)
         page.click("#lesson-show")
+        is_in(page, name, "showing")
         program.command("set_speed", factor=0)
-        expect(lesson).to_have_attribute("data-state", "compared")
+        is_in(page, name, "compared")
         expect(plan.locator(".was")).to_be_visible()
         outcome = program.state()["lesson"]["outcome"]
         assert outcome["right"] == (outcome["distance_m"] <= 1.0) or not on_map

@@ -2,6 +2,7 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
+import { isShown } from "./missing.js";
 import { fresh, open } from "./page.js";
 import { command, door, long, state, until } from "./program.js";
 
@@ -10,8 +11,22 @@ import { command, door, long, state, until } from "./program.js";
 const DEMOS = ["dark", "loop", "twins", "small", "kidnapped", "quicker"];
 const quickly = () => command("set_speed", { factor: 0 });
 
-/** @param {Page} page @param {string} name */
-const isIn = (page, name) => until(`the lesson is in ${name}`, () => page.find("#lesson").dataset.state === name);
+const MOST_WORDS = 90;
+
+/** Waits for a state of the lesson. In none may the card have more to read than this. @param {Page} page @param {string} name */
+async function isIn(page, name) {
+  await until(`the lesson is in ${name}`, () => page.find("#lesson").dataset.state === name);
+  assert.ok(inSight(page).length <= MOST_WORDS, `${name}: ${inSight(page).join(" ")}`);
+}
+
+/** The words of the card that are unfolded. @param {Page} page */
+function inSight(page) {
+  const walk = page.document.createTreeWalker(page.find("#lesson"), 4); // texts
+  const texts = [];
+  while (walk.nextNode())
+    if (isShown(/** @type {Element} */ (walk.currentNode.parentElement))) texts.push(walk.currentNode.textContent);
+  return texts.join(" ").match(/\S*[\p{L}\p{N}]\S*/gu) ?? [];
+}
 
 /** @param {Page} page @param {string} name */
 async function choose(page, name) {
@@ -31,8 +46,11 @@ test("a lesson from the list to the sandbox, with a class that votes", () =>
     await choose(page, "packet");
     assert.equal(page.document.activeElement?.id, "lesson-title");
     await page.says("#lesson-text", "pose cells");
-    await until("the card shows the address", () => page.find(".vote-link a")?.href === door);
+    assert.ok(!page.shown("#lesson-text") && !page.shown("#lesson-formulas math"));
+    await page.click("#lesson-what summary");
     assert.ok(page.shown("#lesson-formulas math"));
+    await page.click("#lesson-what summary");
+    await until("the card shows the address", () => page.find(".vote-link a")?.href === door);
     await open(
       async (pupil) => {
         const counts = () => page.all(".option .count").map((count) => count.textContent);
@@ -58,10 +76,15 @@ test("a lesson from the list to the sandbox, with a class that votes", () =>
     assert.equal(page.find(".outcome").dataset.tone, "wrong");
     await page.says(".outcome", "8 cells on, and 9 layers lower");
     assert.equal(page.all(".option")[0].dataset.look, "true");
+    assert.ok(!page.shown(".option"));
+    await page.push("Moments", "#lesson");
     await page.click(page.all(".moments button").at(-1));
     const end = (await state()).time_s;
+    await page.push("Try it", "#lesson");
     await page.click(".try button");
     await page.says("#events", "packet put in");
+    await isIn(page, "sandbox");
+    assert.ok(page.shown(".try") && !page.shown(".happened"));
     assert.ok((await state()).time_s >= end);
     await page.click("#lessons");
     await until("it counts as gone through", () => page.shown("#lessons-list [data-name=packet] .gone-through"));
@@ -178,6 +201,7 @@ test("a symbol leads to its row in Tune, and the card to Inspect where that tell
   fresh(async (page) => {
     const tab = () => page.text("#panel [role=tab][aria-selected=true]");
     await choose(page, "quicker");
+    await page.click("#lesson-what summary");
     await page.click("#lesson-formulas .symbols button");
     assert.equal(tab(), "Tune");
     const rows = () => page.all("#panel .knob").filter((knob) => knob.checkVisibility());
@@ -190,7 +214,6 @@ test("a symbol leads to its row in Tune, and the card to Inspect where that tell
     await isIn(page, "showing");
     await quickly();
     await isIn(page, "compared");
-    await page.says("#lesson-watch", "What to watch");
     await page.click("#panel [role=tab]");
     page.press("z"); // presenting, the panel is away
     await until("it presents", () => page.document.body.dataset.presenter === "true");

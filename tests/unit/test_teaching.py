@@ -92,7 +92,7 @@ def test_the_kidnaps_take_on_other_seeds_what_lesson_and_answers_say() -> None:
     found = [report_of(LESSONS["kidnapped"], seed).rounds[0].values for seed in range(1, 7)]
     took = [values["found_s"] for values in found if values is not None]
     assert [f"{time:.1f}" for time in took] == times
-    assert f"{', '.join(f'{time:.0f}' for time in took[:5])} and {took[5]:.0f} s" in LESSONS["kidnapped"].because
+    assert f"{', '.join(f'{time:.0f}' for time in took[:5])} and {took[5]:.0f} s" in str(LESSONS["kidnapped"].more)
 
 
 @pytest.mark.parametrize(("name", "kind", "answer"), [("loop", "closure", 4), ("snap", "snap", 5)])

@@ -202,10 +202,12 @@ class TryText(BaseModel):
 
 
 class LessonText(BaseModel):
-    """All that the page tells of a lesson, but what happens in it. explains: Inspect tells why when it is over."""
+    """All that the page tells of a lesson, but what happens in it. text: the paper's passage; more: what else is known of the
+    outcome; explains: Inspect tells why when it is over."""
 
     card: LessonCard
     text: str
+    more: str | None
     formulas: list[FormulaText]
     world: str
     engine: str

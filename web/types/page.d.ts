@@ -117,6 +117,7 @@ type FormulaText = { mathml: string; latex: string; says: string; source: string
 type LessonText = {
   card: LessonCard;
   text: string;
+  more: string | null;
   formulas: FormulaText[];
   world: string;
   engine: string;

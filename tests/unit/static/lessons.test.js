@@ -58,9 +58,9 @@ test("the next lesson is the next one that can be begun", () => {
 test("a lesson says how long it is, and its number", () => {
   assert.equal(cardFacts(card("a")), "A 4 · 10 s");
   assert.equal(cardFacts(card("a", { minutes: 14.6, rounds: 3 })), "A 4 · 15 min · 3 rounds");
-  assert.equal(lessons.which(view(), card("a", { number: 7 })), "Lesson 7 · A 4");
-  assert.equal(lessons.which(view({ rounds: 3, round: 2 }), card("a")), "Lesson 1 · A 4 · round 2 of 3");
-  assert.equal(lessons.which(view(), card("a", { own: true })), "A 4");
+  assert.equal(lessons.which(view(), card("a", { number: 7 })), "Lesson 7");
+  assert.equal(lessons.which(view({ rounds: 3, round: 2 }), card("a")), "Lesson 1 · round 2 of 3");
+  assert.equal(lessons.which(view(), card("a", { own: true })), "Lesson");
 });
 
 test("predictions are taken before the first round is shown", () => {
@@ -82,18 +82,14 @@ test("without a prediction it is only shown; while the scene is set it cannot be
     assert.equal(lessons.showWords(view(state)), words);
 });
 
-test("what is going on is said as a sentence, and so is what is to be done", () => {
+test("what is going on is said as a sentence", () => {
   const doing = "broken off: somebody drove the robot by hand";
   for (const [state, words] of /** @type {[Partial<LessonView>, RegExp][]} */ ([
     [{ state: "showing", doing: "drives on" }, /^Drives on\.$/],
-    [{}, /First say/],
-    [{ prediction: chosen }, /^$/],
+    [{}, /^$/],
     [{ rounds: 2, marks: [ENDED], doing: "3 deg/s is next" }, /^3 deg\/s is next\.$/],
-    [{ state: "sandbox", altered: true }, /yours/],
-    [
-      { state: "sandbox", altered: true, doing },
-      /^Broken off: somebody drove the robot by hand\. "Once more" begins it again\.$/,
-    ],
+    [{ state: "sandbox", altered: true }, /Changed/],
+    [{ state: "sandbox", altered: true, doing }, /^Broken off: somebody drove the robot by hand\.$/],
     [{ state: "sandbox", doing: "play freely", outcome }, /^$/],
   ]))
     assert.match(lessons.doingWords(view(state)), words);
@@ -101,14 +97,31 @@ test("what is going on is said as a sentence, and so is what is to be done", () 
   assert.ok(!lessons.isBroken(view({ state: "sandbox", doing: "play freely", outcome })));
 });
 
-test("what to watch stays where Inspect tells why", () => {
-  const text = /** @type {LessonText} */ ({ explains: false });
-  assert.ok(lessons.isWatched(view({ state: "showing" }), text));
-  assert.ok(lessons.isWatched(view({ rounds: 2, marks: [ENDED] }), text));
-  const over = view({ state: "compared", outcome });
-  assert.ok(!lessons.isWatched(over, text));
-  assert.ok(lessons.isWatched(over, { ...text, explains: true }));
-  assert.ok(!lessons.isWatched(view(), { ...text, explains: true }));
+test("each state has in sight what it is about; a plan also what is compared on it", () => {
+  for (const [state, words] of /** @type {[Partial<LessonView>, string][]} */ ([
+    [{ state: "scene" }, "question, plan"],
+    [{}, "question, plan"],
+    [{ state: "showing" }, "watch"],
+    [{ rounds: 2, marks: [ENDED] }, "watch"],
+    [{ state: "compared", outcome }, "outcome"],
+    [{ state: "compared", outcome, draws: "map" }, "outcome, plan"],
+    [{ state: "sandbox", outcome, draws: "map" }, "sandbox"],
+  ])) {
+    const now = view(state);
+    const parts = { watch: lessons.isWatched(now), ...lessons.unfolded(now), plan: lessons.isPlanShown(now) };
+    const seen = Object.entries(parts).flatMap(([part, is]) => (is ? [part] : []));
+    assert.equal(seen.join(", "), words);
+  }
+});
+
+test("what is told before a question is no part of it", () => {
+  for (const [text, setting, question] of [
+    ["It is 3.6 m away. How will it go?", "It is 3.6 m away.", "How will it go?"],
+    ["It drives on. Where will it be? Draw a point.", "It drives on.", "Where will it be? Draw a point."],
+    ["What now?", "", "What now?"],
+    ["Draw a point.", "", "Draw a point."],
+  ])
+    assert.deepEqual(lessons.inTwo(text), [setting, question]);
 });
 
 test("votes are shares of all, and are held against what came true", () => {
@@ -118,7 +131,7 @@ test("votes are shares of all, and are held against what came true", () => {
   const states = [{}, { votes }, { votes, outcome }, { votes: { counts: [], points: [[1, 2]] } }];
   assert.deepEqual(
     states.map((state) => lessons.classWords(view(state))),
-    ["", "4 votes", "1 of 4 votes were for it", "1 vote"],
+    ["", "4 votes", "1 of 4 predicted it", "1 vote"],
   );
 });
 

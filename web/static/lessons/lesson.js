@@ -1,16 +1,19 @@
-// The lesson's card beside the stage: what this is, the question, where the class votes, what happens, and what came of it. The server
-// says which state the lesson is in; all pages show the same.
+// The lesson's card beside the stage. In each state it shows what that is about: the question, what to watch, what came of it, what to
+// try. All else unfolds. The server says which state the lesson is in; all pages show the same.
 
 import { $, find, icon, make, renew, say } from "../ui/elements.js";
 import {
+  classWords,
   doingWords,
   isBroken,
   isOpen,
+  isPlanShown,
   isWatched,
   moments,
   placeWords,
   showWords,
   tabOf,
+  unfolded,
   verdict,
   which,
   Question,
@@ -49,6 +52,7 @@ export class Lesson {
     $("lesson-again").addEventListener("click", () => this.ask({ type: "lesson_again" }));
     $("lesson-next").addEventListener("click", () => this.next());
     $("lesson-leave").addEventListener("click", () => this.ask({ type: "end_lesson" }));
+    $("lesson-what").addEventListener("toggle", fitFormulas); // folded, they have no width
     $("lesson-fold").addEventListener("click", () => this.fold(this.box.dataset.folded !== "true"));
     document.addEventListener("presenter:next", (event) => this.present(event, 1));
     document.addEventListener("presenter:back", (event) => this.present(event, -1));
@@ -85,6 +89,10 @@ export class Lesson {
     else if (lesson.state === "showing") this.look();
     if (lesson.state === "compared") setDone(lesson.name);
     if (before && lesson.state !== before.state) $("lesson-body").scrollTop = 0;
+    const open = unfolded(lesson);
+    $("lesson-ask").open = open.question;
+    $("lesson-outcome").open = open.outcome;
+    $("lesson-try").open = open.sandbox;
     if (phone()) this.fold(lesson.state === "showing");
   }
 
@@ -97,17 +105,19 @@ export class Lesson {
     this.text = text;
     this.after = nextAfter(cards ?? [], name);
     this.question = new Question(text.predict, (said) => this.ask({ type: "predict", ...said }), this.link.watches);
-    $("lesson-ask").replaceChildren(this.question.box, this.invitation.hint);
+    $("lesson-question").replaceChildren(this.question.box);
+    $("lesson-drawn").replaceChildren(...this.question.drawn, this.invitation.hint);
     this.invitation.look();
     $("lesson-formulas").replaceChildren(
       ...text.formulas.map((formula) => formulaBox(formula, (name) => this.tune(name), this.panel.valueOf)),
     );
     say($("lesson-title"), text.card.title);
+    say($("lesson-paper"), text.card.paper);
     say($("lesson-text"), text.text);
+    $("lesson-what").open = false;
     this.fold(false);
     this.look();
     this.draw();
-    fitFormulas();
     $("lesson-title").focus({ preventScroll: true });
   }
 
@@ -126,11 +136,10 @@ export class Lesson {
     this.box.dataset.state = lesson.state;
     say($("lesson-which"), which(lesson, text.card));
     this.question?.show(lesson, lesson.prediction, this.robot);
-    this.box.dataset.draws = String(lesson.draws !== null);
-    $("lesson-ask").hidden = lesson.state === "showing";
+    this.box.dataset.asks = String(isOpen(lesson));
+    $("lesson-drawn").hidden = !isPlanShown(lesson);
     this.invitation.show(lesson);
-    $("lesson-what").hidden = !text.formulas.length;
-    $("lesson-watch").hidden = !isWatched(lesson, text);
+    $("lesson-watch").hidden = !isWatched(lesson);
     renew($("lesson-watch"), text.watch, () => this.watch(text));
     renew($("lesson-outcome"), [lesson.outcome, lesson.prediction, lesson.marks.map(({ tick }) => tick)], () =>
       this.outcome(lesson, text),
@@ -164,6 +173,7 @@ export class Lesson {
   outcome(lesson, text) {
     if (!lesson.outcome) return [];
     const { tone, head, said } = verdict(lesson, text.predict);
+    const counted = lesson.outcome.choice === null ? "" : classWords(lesson);
     const signs = { right: "check", wrong: "close", none: "info" };
     const rows = moments(lesson.marks, (tick) => tick * this.rate).map(({ tick, words, at }) => {
       const button = make("button", { type: "button" }, make("time", { textContent: at }), words);
@@ -173,22 +183,19 @@ export class Lesson {
       button.addEventListener("click", () => this.timeline.seeker.seek({ tick }));
       return make("li", {}, button);
     });
-    const box = make(
-      "section",
-      { className: "outcome" },
-      make("h3", {}, icon(signs[tone]), head),
-      ...(said ? [make("p", {}, make("b", { textContent: "Predicted: " }), said)] : []),
-      make("p", { className: "happened" }, make("b", { textContent: "It happened: " }), lesson.outcome.words),
-      make("p", { className: "second", textContent: lesson.outcome.because }),
-    );
-    if (text.explains) {
-      const why = make("button", { type: "button", textContent: "Inspect: why it happened" });
-      why.addEventListener("click", () => this.show("inspect"));
-      box.append(why);
-    }
-    box.dataset.tone = tone;
-    const marked = [make("h3", { textContent: "Moments" }), make("ol", { className: "moments" }, ...rows)];
-    return [box, ...(rows.length ? marked : [])];
+    const why = make("button", { type: "button", textContent: "Inspect: why it happened" });
+    why.addEventListener("click", () => this.show("inspect"));
+    $("lesson-outcome").dataset.tone = tone;
+    return [
+      make("summary", {}, make("h3", {}, icon(signs[tone]), head)),
+      ...(said ? [make("p", { className: "second" }, make("b", { textContent: "Predicted: " }), said)] : []),
+      make("p", { className: "happened", textContent: lesson.outcome.words }),
+      make("p", { textContent: lesson.outcome.because }),
+      ...(counted ? [make("p", { className: "second", textContent: counted })] : []),
+      ...(text.more ? [folded("More", make("p", { className: "second", textContent: text.more }))] : []),
+      ...(text.explains ? [why] : []),
+      ...(rows.length ? [folded("Moments", make("ol", { className: "moments" }, ...rows))] : []),
+    ];
   }
 
   /** @param {LessonText} text */
@@ -203,7 +210,7 @@ export class Lesson {
       row.append(press);
       return row;
     });
-    return [make("h3", { textContent: "Now play with it" }), make("ul", { className: "try" }, ...rows)];
+    return [make("summary", { textContent: "Try it" }), make("ul", { className: "try" }, ...rows)];
   }
 
   /** @param {string} at a plate, a tab, or the timeline */
@@ -256,6 +263,9 @@ export class Lesson {
   }
 }
 
+/** @param {string} words @param {HTMLElement} content */
+const folded = (words, content) => make("details", {}, make("summary", { textContent: words }), content);
+
 /** Where the class votes: large and with a QR code for whoever looks at a screen from afar, else a line below the question. */
 class Invitation {
   constructor() {
@@ -273,8 +283,8 @@ class Invitation {
     );
     this.there = vote !== null;
     const here = make("a", { href: vote ?? "/?vote", target: "_blank", textContent: vote ?? "Let the class vote" });
-    if (vote) this.hint.replaceChildren("The class votes at ", here, ".");
-    else this.hint.replaceChildren(here, " on this machine; started with ", command(), ", on their phones.");
+    this.hint.replaceChildren(...(vote ? ["The class votes at ", here, "."] : [here]));
+    here.title = vote ? "" : "On this machine; started with ratslam run --class, on their phones";
     if (!vote) return;
     const image = /** @type {HTMLImageElement} */ (find(this.box, "img"));
     if (!image.src) image.src = "/api/class.svg";
@@ -293,10 +303,9 @@ class Invitation {
 
   draw() {
     this.box.hidden = !this.there || !this.open;
+    this.hint.hidden = !this.open;
   }
 }
-
-const command = () => make("code", { textContent: "ratslam run --class" });
 
 const MATHML = "http://www.w3.org/1998/Math/MathML";
 

@@ -7,7 +7,7 @@ import { make, say, svg } from "../ui/elements.js";
 
 /** What stands over the lesson's title. @param {LessonView} lesson @param {LessonCard | null} card */
 export function which(lesson, card) {
-  const number = card && !card.own ? `Lesson ${card.number} · ${card.paper}` : (card?.paper ?? "Lesson");
+  const number = card && !card.own ? `Lesson ${card.number}` : "Lesson";
   return lesson.rounds > 1 ? `${number} · round ${lesson.round} of ${lesson.rounds}` : number;
 }
 
@@ -29,18 +29,32 @@ export function showWords(lesson) {
 /** Whether it is left to play with before it came to its end. @param {LessonView} lesson */
 export const isBroken = ({ state, outcome, doing }) => state === "sandbox" && !outcome && doing !== "";
 
-/** Whether what to watch is told: while it happens, and afterwards if Inspect tells why. @param {LessonView} lesson @param {LessonText} text */
-export const isWatched = (lesson, { explains }) =>
-  lesson.state === "showing" || isBetween(lesson) || (lesson.state === "compared" && explains);
+/** Whether what to watch is told. @param {LessonView} lesson */
+export const isWatched = (lesson) => lesson.state === "showing" || isBetween(lesson);
+
+/** Which parts of the card are unfolded when a state begins: what the state is about. @param {LessonView} lesson */
+export const unfolded = (lesson) => ({
+  question: isOpen(lesson),
+  outcome: lesson.state === "compared",
+  sandbox: lesson.state === "sandbox",
+});
+
+/** Whether the plan is in sight: to draw on, and to compare. @param {LessonView} lesson */
+export const isPlanShown = (lesson) => isOpen(lesson) || (lesson.draws !== null && lesson.state === "compared");
+
+/** What is told before the question, and the question. @param {string} text */
+export function inTwo(text) {
+  const line = text.replace(/\s+/g, " ");
+  const end = line.lastIndexOf(". ", Math.max(0, line.indexOf("?"))) + 1;
+  return [line.slice(0, end), line.slice(end).trim()];
+}
 
 /** What is going on, or what is to be done. @param {LessonView} lesson */
 export function doingWords(lesson) {
-  const { state, doing, altered, prediction } = lesson;
-  if (isBroken(lesson)) return `${sentence(doing)} "Once more" begins it again.`;
+  const { state, doing, altered } = lesson;
   if (state === "scene") return "The scene is being set.";
-  if (state === "showing") return doing && sentence(doing);
-  if (state !== "predict") return altered ? "You have changed something: this is yours now." : "";
-  return isBetween(lesson) ? doing && sentence(doing) : prediction ? "" : "First say what you think will happen.";
+  if (state === "showing" || isBroken(lesson) || isBetween(lesson)) return doing && sentence(doing);
+  return altered && state !== "predict" ? "Changed by you." : "";
 }
 
 /** How many have voted. @param {LessonView["votes"]} votes */
@@ -58,19 +72,17 @@ export function classWords({ votes, outcome }) {
   if (!all) return "";
   const have = `${all} ${all === 1 ? "vote" : "votes"}`;
   if (outcome?.choice === null || outcome?.choice === undefined) return have;
-  return `${votes.counts[outcome.choice]} of ${have} were for it`;
+  return `${votes.counts[outcome.choice]} of ${all} predicted it`;
 }
 
 /**
  * Prediction and outcome beside one another.
  * @param {LessonView} lesson
  * @param {LessonText["predict"]} asked
- * @returns {{ tone: "right" | "wrong" | "none", head: string, said: string, was: string }}
+ * @returns {{ tone: "right" | "wrong" | "none", head: string, said: string }}
  */
 export function verdict({ prediction, outcome }, { options }) {
-  const choice = outcome?.choice ?? null;
-  const was = choice === null ? "" : options[choice];
-  if (!outcome || outcome.right === null || !prediction) return { tone: "none", head: "What happened", said: "", was };
+  if (!outcome || outcome.right === null || !prediction) return { tone: "none", head: "What happened", said: "" };
   const said =
     prediction.choice !== null
       ? options[prediction.choice]
@@ -78,8 +90,8 @@ export function verdict({ prediction, outcome }, { options }) {
         ? "the point drawn"
         : `${outcome.distance_m.toFixed(1)} m from where it ended`;
   return outcome.right
-    ? { tone: "right", head: "As predicted", said, was: "" }
-    : { tone: "wrong", head: "Not as predicted", said, was };
+    ? { tone: "right", head: "As predicted", said }
+    : { tone: "wrong", head: "Not as predicted", said };
 }
 
 /**
@@ -268,10 +280,13 @@ export class Question {
       return { input, bar, votes, row };
     });
     this.plan = asked.draw ? new Plan(([x, y]) => predict({ x, y })) : null;
-    const legend = make("legend", { textContent: asked.question });
+    const [setting, question] = inTwo(asked.question);
+    const told = setting ? [make("span", { className: "setting", textContent: setting }), " "] : [];
+    const legend = make("legend", {}, ...told, question);
     this.help = make("p", { className: "second", textContent: HELP });
-    const parts = this.plan ? [this.help, this.plan.box] : this.options.map(({ row }) => row);
-    this.box = make("fieldset", { className: "question" }, legend, ...parts, this.votes);
+    const rows = this.options.map(({ row }) => row);
+    this.box = make("fieldset", { className: "question" }, legend, ...rows, ...(this.plan ? [] : [this.votes]));
+    this.drawn = this.plan ? [make("div", { className: "drawn" }, this.help, this.plan.box, this.votes)] : []; // stays in sight longer
     this.compared = false; // whether the plan is that of the outcome
     this.ready = false; // whether it is that of the scene
     if (asked.plate === "office") this.redraw();
@@ -335,7 +350,7 @@ export class Question {
 }
 
 const LEGEND = "Blue: predicted. Orange: where it ended. Ring: the robot.";
-const HELP = "Click the plan, or move the cross with the arrow keys and press Enter.";
+const HELP = "Click the plan, or use the arrow keys and Enter.";
 
 /** Where it is now. @param {Pose | null} robot @returns {Pin[]} */
 const robotPin = (robot) =>

@@ -54,7 +54,7 @@ async function begin(name) {
   const loaded = /** @type {LessonText} */ (await answer.json());
   [text, own, begun] = [loaded, null, name];
   question = new Question(loaded.predict, vote);
-  $("vote-question").replaceChildren(question.box);
+  $("vote-question").replaceChildren(question.box, ...question.drawn);
 }
 
 /** @param {Said} said */
