@@ -1,4 +1,4 @@
-"""What is in sight at first: `python -m benchmarks.calm [FOLDER]`. Bar: at most 18 controls at the first visit, 1280 x 720.
+"""What is in sight at first: `python -m benchmarks.calm [FOLDER] [--only NAME]`. Bar: 18 controls at the first visit, 1280 x 720.
 
 It opens the page as a newcomer would and, three simulated minutes later, as somebody who knows it, at the sizes of a laptop, a
 lecture hall and a phone. It counts controls and words that can be seen, and how much of each plate is covered by what lies on the
@@ -7,6 +7,7 @@ stage. With a folder it leaves a picture of each there.
 
 from __future__ import annotations
 
+import argparse
 import sys
 from dataclasses import dataclass
 from pathlib import Path
@@ -52,12 +53,15 @@ SIGHTS = [
 ]
 
 
-def main(folder: Path | None) -> int:
+def main(folder: Path | None, only: str | None) -> int:
+    """only: one of the sights, by name."""
     program, most = Program("--port", "0", "--seed", "3"), 0
     try:
         with sync_playwright() as playwright:
             browser = launch(playwright)
             for sight in sorted(SIGHTS, key=lambda sight: not sight.first):
+                if only not in (None, sight.name):
+                    continue
                 if not sight.first:
                     explore(program)
                 controls, words = look(browser, program, sight, folder)
@@ -99,4 +103,8 @@ def settle(page: Page) -> None:
 
 
 if __name__ == "__main__":
-    sys.exit(main(Path(sys.argv[1]) if len(sys.argv) > 1 else None))
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("folder", nargs="?", type=Path)
+    parser.add_argument("--only", choices=[sight.name for sight in SIGHTS])
+    args = parser.parse_args()
+    sys.exit(main(args.folder, args.only))
