@@ -146,7 +146,7 @@ def test_the_view_ends_at_a_leaf_and_goes_on_behind_glass(office: Office) -> Non
     def reach(kind: str, layer: LivingLayer | None) -> float:
         drawing = replace(world, walls=walls, wall_height_m=heights, wall_kind=(*world.wall_kind, kind))
         here = replace(PLAIN.truth, x=5.0, y=4.0, heading_rad=0.0)
-        office.show(replace(PLAIN, world=drawing, truth=here, living=layer), 20.0)
+        office.show(replace(PLAIN, world=drawing, truth=here, living=layer, speed=8.0), 20.0)  # nobody carried it
         tips = office.drawn("/office/view_edges")[:, 1, :2]  # of the two outermost rays
         return float(FIT.to_office(tips)[:, 0].max())
 
