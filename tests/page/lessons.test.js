@@ -45,7 +45,7 @@ test("a lesson from the list to the sandbox, with a class that votes", () =>
   fresh(async (page) => {
     await choose(page, "packet");
     assert.equal(page.document.activeElement?.id, "lesson-title");
-    await page.says("#lesson-text", "pose cells");
+    await page.says("#lesson-text", "Pose cells");
     assert.ok(!page.shown("#lesson-text") && !page.shown("#lesson-formulas math"));
     await page.click("#lesson-what summary");
     assert.ok(page.shown("#lesson-formulas math"));
