@@ -52,14 +52,15 @@ def open_page(
     stage: bool = True,
     first: bool = False,
     touched: bool = False,
-    level: str = "lab",
+    level: str | None = None,
 ) -> Iterator[Page]:
     """The page, awake and alive. Afterwards its console must have no error, and no request may have left its origin.
 
     gone: the server goes away meanwhile, so connections may be refused. refused: the server has a reason to refuse an
     upload, which Chromium logs. forbidden: the same of what only the main page may do. stage: without the viewer the page
     is there in a tenth of the time, to test what is around it. first: as on a first visit, which is welcomed. touched: by
-    fingers, as a page narrower than 500 pixels is anyway. level: how much is in sight, by default everything.
+    fingers, as a page narrower than 500 pixels is anyway. level: how much is in sight, by default
+    little on a first visit and else everything.
     """
     context = browser.new_context(
         viewport={"width": width, "height": height},
@@ -68,7 +69,7 @@ def open_page(
     )
     context.set_default_timeout(PATIENCE_MS)
     context.add_init_script(KEEP_TOASTS)
-    kept = {"level": level} | ({} if first else {"first minute": "seen"})
+    kept = {"level": level or "watch"} if first else {"level": level or "lab", "first minute": "seen"}
     for key, value in kept.items():  # Chromium's own page of errors keeps nothing
         context.add_init_script(f"if (origin !== 'null') localStorage['{key}'] ??= '{value}'")
     page = context.new_page()

@@ -88,7 +88,7 @@ link.on("state", (/** @type {{ state: State, page: PageFields }} */ detail) => {
   header.show(state, detail.page);
   watched.show(state, detail.page);
   aids.show(detail.page);
-  panel.inspected(detail.page.inspected);
+  panel.inspected(detail.page.inspected, viewer.clicks > 0);
   timeline.at(state, detail.page.time);
   lesson.at(state);
   runUntil.at(state, detail.page.places);

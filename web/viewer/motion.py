@@ -16,6 +16,8 @@ from web.viewer.primitives.labels import add_mesh
 from web.viewer.replay import Replay
 from web.viewer.scenery import Scenery
 
+FRESH_S = 2.0  # of simulated time: who has not looked for longer has missed it
+REST_S = 20.0  # between two corrections that play by themselves: the map stands still meanwhile
 QUICKEST = 2.0  # times real time: who runs faster does not look for single events
 LEAST_BEND_M = 0.15  # a smaller correction is not seen on the plate
 JUMP_M = 0.6  # more than it drives between two snapshots at that speed
@@ -52,6 +54,7 @@ class Motion:
         self._lift: _Way | None = None
         self._run: _Way | None = None
         self._awaited: tuple[float, float] | None = None  # a new goal whose route has not come yet
+        self._rests_until_s = 0.0
         palette = self._map.palette
         disc = meshes.flat_polygon(meshes.circle(0.3), RUN_Z)
         self._dot = add_mesh(
@@ -69,15 +72,22 @@ class Motion:
         if last is None or last is now or last.run != now.run or now.tick < last.tick:
             return
         self._await_route(last, now, now_s)
-        if now.sought(last) or not 0 < now.speed <= QUICKEST:
+        if now.sought(last) or now.time_s - last.time_s > FRESH_S or not 0 < now.speed <= QUICKEST:
             return
         if last.truth is not None and now.truth is not None:
             jump_m = math.hypot(now.truth.x - last.truth.x, now.truth.y - last.truth.y)
             if jump_m > JUMP_M:
                 self._carry(now, now_s)
-        new = now.closures[-1] if now.closures else None
-        if now.running and new and new not in last.closures and new.moved_m >= LEAST_BEND_M and not self._replay.runs:
+        if now.running:
+            self._straighten(last, now, now_s)
+
+    def _straighten(self, last: Snapshot, now: Snapshot, now_s: float) -> None:
+        if len(now.closures) == 0 or now.closures is last.closures or self._replay.runs or now_s < self._rests_until_s:
+            return
+        new = now.closures[-1]
+        if new.moved_m >= LEAST_BEND_M and all(new is not known for known in last.closures):
             self._replay.start(new, now_s)
+            self._rests_until_s = now_s + REST_S
 
     def _await_route(self, last: Snapshot, now: Snapshot, now_s: float) -> None:
         before, goal = last.goal, now.goal

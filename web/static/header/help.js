@@ -36,7 +36,8 @@ export class Help {
   show() {
     const theme = document.documentElement.dataset.theme ?? "dark";
     for (const picture of this.dialog.querySelectorAll("img")) {
-      picture.onerror = () => picture.remove(); // before the first tick there is none
+      picture.onload = () => (picture.hidden = false);
+      picture.onerror = () => (picture.hidden = true); // before the first tick there is none, nor is there an office in a recording
       picture.src = `/api/picture/${picture.dataset.plate}?theme=${theme}`;
     }
     this.dialog.showModal();

@@ -93,7 +93,12 @@ export class Panel {
     this.levels = levels;
     /** @type {Ask} */
     const ask = (command) => link.ask(command);
-    const inspect = (/** @type {Record<string, number>} */ wish) => void ask({ type: "inspect", ...wish });
+    this.wishes = 0; // of this panel to inspect something, that are not answered yet
+    const inspect = async (/** @type {Record<string, number>} */ wish) => {
+      this.wishes += 1;
+      await ask({ type: "inspect", ...wish });
+      this.wishes -= 1;
+    };
     this.truth = new TruthTab(ask);
     this.tuning = new TuneTab(ask);
     /** @type {Record<string, { box: HTMLElement, parts: Parts }>} */
@@ -224,12 +229,19 @@ export class Panel {
     this.truth.recolour();
   }
 
-  /** Opens the tab that tells about what was just chosen; a page that has just loaded keeps its tab. @param {string | null} name */
-  inspected(name) {
+  /**
+   * Opens the tab that tells about what was just chosen; a page that has just loaded keeps its tab, and one that shows less than all
+   * is disturbed by its own choice only.
+   * @param {string | null} name @param {boolean} own whether somebody has chosen on this page
+   */
+  inspected(name, own) {
     const before = this.looked;
     this.looked = name;
     if (name === null || before === undefined || name === before) return;
-    this.open("Inspect");
-    if (!this.levels.has("lab")) this.show(true);
+    if (this.levels.has("lab")) this.open("Inspect");
+    else if (own || this.wishes > 0) {
+      this.open("Inspect");
+      this.show(true);
+    }
   }
 }

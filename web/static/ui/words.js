@@ -30,7 +30,9 @@ let count = 0; // of all toasts so far
  * @param {string} text @param {{ bad?: boolean, notice?: boolean, stays?: boolean }} [kind]
  */
 export function toast(text, { bad = false, notice = false, stays = false } = {}) {
-  for (const other of all()) if (!("stays" in other.dataset) || other.dataset.text === text) other.remove();
+  const place = $(bad ? "alerts" : "toasts"); // what was refused is not wiped away by what was done
+  for (const other of all())
+    if (other.dataset.text === text || (other.parentElement === place && !("stays" in other.dataset))) other.remove();
   const box = document.createElement("div");
   box.className = bad ? "toast bad" : "toast";
   Object.assign(box.dataset, { text, number: String(++count) });
@@ -44,7 +46,7 @@ export function toast(text, { bad = false, notice = false, stays = false } = {})
     close,
   );
   box.addEventListener("click", () => box.remove());
-  $(bad ? "alerts" : "toasts").append(box);
+  place.append(box);
   if (stays) box.dataset.stays = "";
   else leave(box, 4000 + 80 * text.length);
   return box;
