@@ -71,6 +71,10 @@ const watched = new Watched({
 });
 if (!watching) takeBrainFiles();
 const keeping = new Keeping(link, { viewer, panel, files, timeline, mayLeave });
+viewer.addEventListener(
+  "chosen",
+  (event) => void panel.awaits(/** @type {CustomEvent<Promise<Answer>>} */ (event).detail),
+);
 viewer.addEventListener("inside", () => {
   const inside = viewer.frame.contentWindow;
   if (inside) watching ? takeNoFiles(inside) : files.catchDrops(inside);
@@ -88,7 +92,7 @@ link.on("state", (/** @type {{ state: State, page: PageFields }} */ detail) => {
   header.show(state, detail.page);
   watched.show(state, detail.page);
   aids.show(detail.page);
-  panel.inspected(detail.page.inspected, viewer.clicks > 0);
+  panel.inspected(detail.page.inspected);
   timeline.at(state, detail.page.time);
   lesson.at(state);
   runUntil.at(state, detail.page.places);

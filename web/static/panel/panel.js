@@ -78,6 +78,7 @@ const FROM = {
  */
 
 const EVERY_MS = 150; // the server takes ten messages a second
+const LATE_STATES = 3; // that may have been on their way when a choice was answered
 
 export class Panel {
   /**
@@ -93,12 +94,8 @@ export class Panel {
     this.levels = levels;
     /** @type {Ask} */
     const ask = (command) => link.ask(command);
-    this.wishes = 0; // of this panel to inspect something, that are not answered yet
-    const inspect = async (/** @type {Record<string, number>} */ wish) => {
-      this.wishes += 1;
-      await ask({ type: "inspect", ...wish });
-      this.wishes -= 1;
-    };
+    this.awaited = 0; // states that may still bring what was chosen on this page
+    const inspect = (/** @type {Record<string, number>} */ wish) => void this.awaits(ask({ type: "inspect", ...wish }));
     this.truth = new TruthTab(ask);
     this.tuning = new TuneTab(ask);
     /** @type {Record<string, { box: HTMLElement, parts: Parts }>} */
@@ -229,17 +226,25 @@ export class Panel {
     this.truth.recolour();
   }
 
+  /** Something was chosen on this page; one of the next states shows it. @param {Promise<Answer>} answer */
+  async awaits(answer) {
+    this.awaited = Infinity;
+    await answer;
+    this.awaited = LATE_STATES;
+  }
+
   /**
    * Opens the tab that tells about what was just chosen; a page that has just loaded keeps its tab, and one that shows less than all
    * is disturbed by its own choice only.
-   * @param {string | null} name @param {boolean} own whether somebody has chosen on this page
+   * @param {string | null} name
    */
-  inspected(name, own) {
+  inspected(name) {
     const before = this.looked;
+    const own = this.awaited-- > 0;
     this.looked = name;
     if (name === null || before === undefined || name === before) return;
     if (this.levels.has("lab")) this.open("Inspect");
-    else if (own || this.wishes > 0) {
+    else if (own) {
       this.open("Inspect");
       this.show(true);
     }

@@ -37,7 +37,6 @@ export class Viewer extends EventTarget {
     this.link = link;
     this.keys = keys;
     this.frame = $("stage");
-    this.clicks = 0; // of this page that are not answered yet: what comes of one is shown before its answer
     this.drawer = whoDraws();
     this.soft = this.drawer !== null && isSoftware(this.drawer);
     /** @type {ViewName} */
@@ -101,9 +100,9 @@ export class Viewer extends EventTarget {
 
   /** Where, in halves of the height from the middle. Resolves when it is answered. @param {Point} at @param {boolean} shift @param {Drawn | null} drawn */
   async click(at, shift, drawn = null) {
-    this.clicks += 1;
-    const answer = await this.link.ask({ type: "click", at, shift, drawn });
-    this.clicks -= 1;
+    const asked = this.link.ask({ type: "click", at, shift, drawn });
+    this.dispatchEvent(new CustomEvent("chosen", { detail: asked }));
+    const answer = await asked;
     if (!answer.accepted && !answer.detail.length)
       toast("The click did not arrive: the connection is lost. Click again.", { bad: true });
   }
