@@ -26,8 +26,9 @@ BOXES = """([parts, least]) => {
         if (box.left < -0.5 || box.right > innerWidth + 0.5 || box.top < -0.5 || box.bottom > bottom + 0.5)
             wrong.push(`${name(part)} sticks out`);
         for (const other of all.slice(k + 1)) {
-            const sheets = [...innerWidth <= 1000 ? ["panel"] : [], ...innerWidth <= 760 ? ["lesson"] : []];
-            const sheet = sheets.includes(part.id) || sheets.includes(other.id);
+            const sheets = [...innerWidth <= 1000 ? ["panel"] : [], ...innerWidth <= 760 || innerHeight <= 500 ? ["lesson"] : []];
+            const thumb = part.id === "stage" && other.matches(".pad") && innerWidth > innerHeight; // a phone on its side
+            const sheet = thumb || sheets.includes(part.id) || sheets.includes(other.id);
             if (!sheet && !part.contains(other) && !other.contains(part) && !apart(box, other.getBoundingClientRect()))
                 wrong.push(`${name(part)} and ${name(other)} cover one another`);
         }
