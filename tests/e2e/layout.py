@@ -18,6 +18,8 @@ BOXES = """([parts, least]) => {
         || Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top) <= 0.5;
     const scrolls = getComputedStyle(document.documentElement).overflowY !== "hidden"; // the page as a whole
     const bottom = scrolls ? document.documentElement.scrollHeight : innerHeight;
+    const on_its_side = matchMedia("(pointer: coarse) and (max-height: 500px) and (min-width: 560px)").matches; // a phone
+    const folded = on_its_side && document.getElementById("lesson")?.dataset.folded === "true";
     if (document.documentElement.scrollWidth > innerWidth) wrong.push("the page is wider than the window");
     for (const part of document.querySelectorAll("dialog[open], #time"))
         if (shown(part) && part.scrollWidth > part.clientWidth) wrong.push(`${name(part)} is wider than it shows`);
@@ -26,8 +28,8 @@ BOXES = """([parts, least]) => {
         if (box.left < -0.5 || box.right > innerWidth + 0.5 || box.top < -0.5 || box.bottom > bottom + 0.5)
             wrong.push(`${name(part)} sticks out`);
         for (const other of all.slice(k + 1)) {
-            const sheets = [...innerWidth <= 1000 ? ["panel"] : [], ...innerWidth <= 760 || innerHeight <= 500 ? ["lesson"] : []];
-            const thumb = part.id === "stage" && other.matches(".pad") && innerWidth > innerHeight; // a phone on its side
+            const sheets = [...innerWidth <= 1000 ? ["panel"] : [], ...innerWidth <= 760 || folded ? ["lesson"] : []];
+            const thumb = on_its_side && part.id === "stage" && other.matches(".pad");
             const sheet = thumb || sheets.includes(part.id) || sheets.includes(other.id);
             if (!sheet && !part.contains(other) && !other.contains(part) && !apart(box, other.getBoundingClientRect()))
                 wrong.push(`${name(part)} and ${name(other)} cover one another`);
