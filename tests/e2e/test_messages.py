@@ -51,6 +51,15 @@ def test_one_thing_is_told_at_a_time_and_the_stage_keeps_its_size(fake: Fake, br
             assert toasts(page) == [words]
 
 
+def test_what_was_refused_is_not_wiped_away_by_what_was_done(fake: Fake, browser) -> None:
+    with open_page(browser, fake[1], stage=False) as page:
+        quiet(page)
+        for words, options in ((LONG, {"bad": True}), ("Done.", {}), ("Done again.", {})):
+            page.evaluate(SAY, [words, options])
+        assert set(toasts(page)) == {LONG, "Done again."}
+        assert page.evaluate(SHOWN) == ["alerts"]
+
+
 def test_a_toast_has_the_sign_of_its_kind_and_stays_for_as_long_as_reading_needs(fake: Fake, browser) -> None:
     with open_page(browser, fake[1], stage=False) as page:
         quiet(page)

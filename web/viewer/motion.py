@@ -82,7 +82,7 @@ class Motion:
             self._straighten(last, now, now_s)
 
     def _straighten(self, last: Snapshot, now: Snapshot, now_s: float) -> None:
-        if len(now.closures) == 0 or now.closures is last.closures or self._replay.runs or now_s < self._rests_until_s:
+        if not now.closures or self._replay.runs or now_s < self._rests_until_s:
             return
         new = now.closures[-1]
         if new.moved_m >= LEAST_BEND_M and all(new is not known for known in last.closures):

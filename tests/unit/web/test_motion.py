@@ -12,7 +12,7 @@ from tests.unit.web.bench import Bench
 from tests.unit.web.test_replay import closing, runs
 from web.messages import Snapshot
 from web.viewer.camera_views import MAP_AT
-from web.viewer.motion import LIFT_S, RUN_S
+from web.viewer.motion import FRESH_S, LIFT_S, REST_S, RUN_S
 
 pytestmark = pytest.mark.slow
 
@@ -32,6 +32,29 @@ def test_a_new_correction_is_played_once_at_a_speed_at_which_one_watches(
     assert runs(stage) == plays
     stage.show(replace(snapshot, tick=snapshot.tick + 3), 10.0)
     stage.show(replace(snapshot, tick=snapshot.tick + 4), 2.0)
+    assert not runs(stage)
+
+
+def test_the_map_stands_still_for_a_while_between_two_corrections(stage: Bench) -> None:
+    """One that comes meanwhile is missed; the next one after it is played."""
+    plain = at_speed(closing(), 1.0)
+    (first,) = plain.closures
+    closures = [replace(first, event=first.event + k) for k in range(3)]
+    stage.show(replace(plain, closures=()), 10.0)
+    played = []
+    for k, wait_s in enumerate((0.1, REST_S / 2, REST_S)):
+        stage.show(replace(plain, tick=plain.tick + 2 * k, closures=tuple(closures[:k])), wait_s)
+        stage.show(replace(plain, tick=plain.tick + 2 * k + 1, closures=tuple(closures[: k + 1])), 0.1)
+        stage.show(replace(plain, tick=plain.tick + 2 * k + 1, closures=tuple(closures[: k + 1])), 2.0)
+        played.append(runs(stage))
+    assert played == [True, False, True]
+
+
+def test_who_has_not_looked_for_some_seconds_is_shown_no_correction(stage: Bench) -> None:
+    snapshot = at_speed(closing(), 1.0)
+    stage.show(replace(snapshot, closures=(), time_s=snapshot.time_s - 1.5 * FRESH_S), 10.0)
+    stage.show(replace(snapshot, tick=snapshot.tick + 1), 0.1)
+    stage.show(replace(snapshot, tick=snapshot.tick + 2), 2.0)
     assert not runs(stage)
 
 

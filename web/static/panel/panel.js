@@ -243,10 +243,8 @@ export class Panel {
     const own = this.awaited-- > 0;
     this.looked = name;
     if (name === null || before === undefined || name === before) return;
-    if (this.levels.has("lab")) this.open("Inspect");
-    else if (own) {
-      this.open("Inspect");
-      this.show(true);
-    }
+    const all = this.levels.has("lab");
+    if (all || own) this.open("Inspect");
+    if (!all && own) this.show(true);
   }
 }
