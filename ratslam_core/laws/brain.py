@@ -134,7 +134,7 @@ def _buffers(cells: PoseCells) -> None:
     array("spare cells", cells._spare_cells, np.int32, (room, 4))
     for name in ("_values", "_spare_values"):
         array(name[1:], getattr(cells, name), np.float32, (room,))
-    for name in ("_owner", "_spare_owner", "_peaks"):
+    for name in ("_owner", "_peaks"):
         array(name[1:], getattr(cells, name), np.int32, (room,))
     array("bounds", cells._bounds, np.int8, (room, 6))
 
@@ -166,11 +166,9 @@ def _activity(cells: PoseCells) -> None:
 def _packets(cells: PoseCells) -> None:
     k, spare = len(array("packets", cells._rows, np.float64, (None, packet_kernels.ROW))), len(cells._spare_rows)
     array("spare packets", cells._spare_rows, np.float64, (None, packet_kernels.ROW))
-    moves = len(array("moves", cells._moves, np.float64, (None, 4)))
-    array("yaws", cells._yaws, np.float64, (moves,))
     ids = array("ids", cells._ids, np.int64, (k,))
     array("spare ids", cells._spare_ids, np.int64, (spare,))
-    found = whole("the number of packets", cells._found, 1, min(k, moves, cells._n))
+    found = whole("the number of packets", cells._found, 1, min(k, cells._n))
     within("owner", cells._owner[: cells._n], 0, found - 1)
     within("ids", ids[:found], 1, np.iinfo(np.int32).max)
     rows = cells._rows[:found]
@@ -178,7 +176,6 @@ def _packets(cells: PoseCells) -> None:
         within("a packet's place", rows[:, axis], 0.0, cells.shape[2 - axis])
     within("a packet's mass", rows[:, packet_kernels.MASS], 0.0, MOST_ACTIVITY)
     within("a packet's headings", rows[:, [packet_kernels.COS, packet_kernels.SIN]], -1.001, 1.001)
-    within("a packet's carry", rows[:, packet_kernels.CARRY :], -float(max(cells.shape)), float(max(cells.shape)))
 
 
 def _goal_memory(memory: GoalMemory, now_s: float) -> None:

@@ -107,17 +107,13 @@ class ViewLinks:
     def recall(self, view: int, lost: bool = False) -> tuple[NDArray[np.int32], NDArray[np.float32]]:
         """What the active view injects: min(beta, s_max) per link. ACRA 2004 eq. 4.
 
-        [ours] Scaled down so that all links together inject at most `injection`: one view must not move a packet, since it may
-        be perceptual aliasing, but several that agree must. A lost robot's view injects LOST in sum.
-        test_view_links.py::test_injection_is_capped_in_sum.
+        [ours] A lost robot's view injects LOST in sum. test_view_links.py::test_a_lost_robot_s_view_injects_more.
         """
         cells, strength = self.of(view)
         values = np.minimum(strength, np.float32(self.params.saturation))
         total = float(values.sum(dtype=np.float64))
         if lost and total > 0:
             values *= np.float32(LOST / total)
-        elif self.params.capped and total > self.params.injection:
-            values *= np.float32(self.params.injection / total)
         return cells, values
 
     def _make_room(self, view: int, active: int, slot: NDArray[np.int32]) -> None:
@@ -168,10 +164,8 @@ class VisualAssociation:
 
         strength: how sure the recognition is, 0 to 1; lost: the robot knows that it was carried away.
 
-        [ours] What is injected was learnt before this step, and a view younger than `rest` neither injects nor learns on.
-        Otherwise it would hold the packet back where it has just been learnt. The plain twin is `learn_first`, with
-        `rest` 0.
-        test_visual_association.py::test_a_young_view_does_not_hold_the_packet_back.
+        [ours] A view younger than `rest` neither injects nor learns on. Otherwise it would hold the packet back where it has
+        just been learnt. test_visual_association.py::test_a_young_view_does_not_hold_the_packet_back.
         """
         self._time_s += dt
         self.injection = None
@@ -180,18 +174,14 @@ class VisualAssociation:
         if seen.view < 0:
             return
         self.learning_rate = self._rate(strength, 0.0 if lost else min(1.0, pose_cells.winner.mass))
-        young = self._time_s - self._learnt_s[seen.view] < self.params.rest
-        learns_first = self.params.learn_first or seen.recruited
-        if learns_first:
-            self._learn(seen.view, pose_cells)
+        young = self.age_s(seen.view) < self.params.rest
+        if seen.recruited or not young:
+            self.links.learn(seen.view, *pose_cells.active, pose_cells.slot, self.learning_rate)
         if young:
             return
         cells, injection = self.links.recall(seen.view, lost)
-        cells = cells.copy()
-        if not learns_first:
-            self._learn(seen.view, pose_cells)
         pose_cells.inject(cells, injection)
-        self.injection = Injection(seen.view, cells, injection)
+        self.injection = Injection(seen.view, cells.copy(), injection)
 
     def age_s(self, view: int) -> float:
         """How long ago a view was recruited, seconds of the engine's time."""
@@ -204,9 +194,6 @@ class VisualAssociation:
             return
         self._learnt_s[view] = self._time_s
         self.links.forget(view)
-
-    def _learn(self, view: int, pose_cells: PoseCellsPart) -> None:
-        self.links.learn(view, *pose_cells.active, pose_cells.slot, self.learning_rate)
 
     def _rate(self, strength: float, confidence: float) -> float:
         """The Hebbian learning rate of this step: fixed, or adaptive.

@@ -34,10 +34,6 @@ class PoseCellParams:
     inhibit: float = param(
         3e-4, "global inhibition taken from every cell", 0.0, 0.02, symbol="φ", source="A eq. 11; value ours",
         lecture=True)
-    carry: bool = param(
-        True,
-        "a packet goes as far as the wheels say: the motion that the attractor swallows, and that the spread of its "
-        "headings takes away, is given back; off = each layer straight on")
     yaw_bias: float = param(
         0.0, "added to the yaw rate for the pose cells alone while the wheels turn: 0.0262 = 1.5 deg/s; 0 = as it is",
         -0.2, 0.2, "rad/s", symbol="b_θ'", source="B 5.2", lecture=True)
@@ -66,19 +62,16 @@ class LocalViewParams:
     field_of_view: float = param(
         math.radians(50), "width of the camera's view, to read headings from shifts", 0.1, 6.3, "rad",
         source="A 3, C IV.A")
-    learning_rate: float = param(0.15, "Hebbian learning rate", 0.0, 1.0, symbol="η", source="C IV.C", lecture=True)
+    learning_rate: float = param(
+        0.015, "Hebbian learning rate, times the activity of a view", 0.0, 1.0, symbol="η", source="C IV.C; 0.15 x 0.1",
+        lecture=True)
     adaptive: bool = param(
         False, "the learning rate follows the strength of vision and the confidence of the estimate",
         source="A 6.3 (future work); ours")
-    learn_first: bool = param(
-        False, "a view learns before it injects; off = it injects only what it had learnt before this step",
-        source="A 4; off is ours")
     decay: float = param(0.0, "share of a link forgotten in each beat", 0.0, 1.0, symbol="δ", source="A eq. 2")
     most_links: int = param(600, "links to pose cells that a view keeps, the strongest; 0 = all", 0, 1_000_000)
     saturation: float = param(
-        0.02, "most that one link injects", 0.0, 1.0, symbol="s_max", source="A eq. 4; value ours", lecture=True)
-    capped: bool = param(True, "all links of a view inject at most `injection` together")
-    injection: float = param(0.14, "most that all links of a view inject together", 0.0, 5.0)
+        0.0007, "most that one link injects", 0.0, 1.0, symbol="s_max", source="A eq. 4; value ours", lecture=True)
     rest: float = param(10.0, "a view younger than this does not inject", 0.0, 1e6, "s")
     surprise: float = param(
         1.0, "difference from the image before that driving cannot explain, in multiples of the front end's own", 0.0,

@@ -19,19 +19,6 @@ class Addition:
 
 ADDITIONS = (
     Addition(
-        "carry",
-        "a packet goes as far as the wheels say, along the arc driven: what the attractor swallows is added to the next "
-        "movement, and the spread of its headings divided out",
-        "an attractor pins slow packets to the lattice of its cells, and spread headings shorten the way",
-        {"pose_cells.carry": False},
-    ),
-    Addition(
-        "capped injection",
-        "all links of a view together inject at most a fixed amount",
-        "one view, perhaps perceptual aliasing, must not move a packet; several that agree must",
-        {"local_view.capped": False},
-    ),
-    Addition(
         "image and sonars",
         "views are levels in even light together with the sonars' echoes; what tells little is doubted, and nothing is no view",
         "grey levels change with every lamp, and walls look alike where echoes differ",
@@ -39,9 +26,9 @@ ADDITIONS = (
     ),
     Addition(
         "waiting time of new views",
-        "a new view injects nothing for some seconds, and later only what it had learnt before the step",
+        "a new view injects nothing for some seconds",
         "otherwise it would hold the packet back where it has just been learnt",
-        {"local_view.rest": 0.0, "local_view.learn_first": True},
+        {"local_view.rest": 0.0},
     ),
     Addition(
         "heading from the shift",
@@ -50,10 +37,10 @@ ADDITIONS = (
         {"local_view.facing": False},
     ),
     Addition(
-        "place within the zone",
-        "the robot may be beside an experience's centre, and a transition is measured where it comes nearest to it",
+        "best observation",
+        "a transition is measured where the robot comes nearest to the experience",
         "the robot enters a zone at its edge, half a metre from where the experience was made",
-        {"experience_map.zone_offset": False, "experience_map.best_observation": False},
+        {"experience_map.best_observation": False},
     ),
     Addition(
         "uncertain looks",

@@ -18,22 +18,18 @@ _ALSO_OFF: dict[str, Value] = {
     "experience_map.shortcut_m": 0.0,
 }
 _PLAIN: dict[str, Value] = {name: value for addition in ADDITIONS for name, value in addition.off.items()} | _ALSO_OFF
-# B to D. Nobody tells the activity of an active local view cell: a tenth, at the learning rate of 0.15. A link saturates so
-# that a single observation moves no packet, as D's table demands, which is flat in N_vis. Equations B12-14 and D7 diverge
-# unless their sums are divided by the number of links. In D5, experience j lies where it is relative to experience i itself,
-# not to where the robot entered its zone. docs/findings.md has each with and without it.
-_READ: dict[str, Value] = {
-    "local_view.learning_rate": 0.15 * 0.1,
-    "local_view.saturation": 0.0007,
-    "experience_map.sweep": "by experience",
-    "experience_map.zone_offset": True,
-}
+# B to D. Equations B12-14 and D7 diverge unless their sums are divided by the number of links. Three readings are the
+# defaults: in D5, experience j lies where it is relative to experience i itself, not to where the robot entered its zone;
+# nobody tells the activity of an active local view cell, which is a tenth, at the learning rate of 0.15; and a link saturates
+# so that a single observation moves no packet, as D's table demands. docs/findings.md has each with and without it.
+_READ: dict[str, Value] = {"experience_map.sweep": "by experience"}
 _PAPERS: dict[str, dict[str, Value]] = {
     # A: pose cells and local view; the map is the cells' own plane.
     "paper-2004": {
         **_PLAIN,
         "local_view.front_end": "complex cells",
         "local_view.learning_rate": 0.2,
+        "local_view.saturation": 0.02,
         "experience_map.enabled": False,
         "experience_map.link_confidence": 0.0,
     },

@@ -85,17 +85,14 @@ def inject(
     cells: Cells,
     values: Values,
     n: int,
-    owner: NDArray[np.int32],
     slot: Slot,
     shape: Shape,
 ) -> int:
-    """P <- P + injection. A eq. 4. New cells move with the winner. `slot` indexes P before and after."""
+    """P <- P + injection. A eq. 4. `slot` indexes P before and after."""
     n_y, n_x = shape[1], shape[2]
-    before = n
     for i in range(flats.size):
         row = flats[i] // n_x
         n = add(flats[i] - row * n_x, row % n_y, row // n_y, flats[i], more[i], cells, values, n, slot)
-    owner[before:n] = 0
     return n
 
 
@@ -104,41 +101,39 @@ def shift(
     cells: Cells,
     values: Values,
     n: int,
-    owner: NDArray[np.int32],
-    moves: NDArray[np.float64],
-    yaws: NDArray[np.float64],
+    distance: float,
+    yaw: float,
     headings: NDArray[np.float64],
     out_cells: Cells,
     out_values: Values,
-    out_owner: NDArray[np.int32],
     slot: Slot,
     shape: Shape,
     patch: NDArray[np.float32],
 ) -> int:
     """P'_xyz = sum over a 2x2x2 cube of alpha_abc P. A eqs. 5-9. `slot` indexes the input, afterwards the output.
 
-    owner: the packet of each cell; moves, shape (packets, 4): how far the packet moves forwards and to its left (cells,
-    each layer along its own heading, headings[t] = cos, sin), and what is added to x and y of all its layers; yaws: its
-    turn in layers. patch: scratch, PATCH x PATCH zeros. Successive cells of the same layer are summed up there first,
-    so that each cell of the result is looked up twice rather than eight times.
+    distance: how far each layer moves along its own heading, headings[t] = cos, sin (cells); yaw: the turn (layers). patch:
+    scratch, PATCH x PATCH zeros. Successive cells of the same layer are summed up there first, so that each cell of the
+    result is looked up twice rather than eight times.
     """
     n_theta, n_y, n_x = shape
     clear(cells, n, slot)
     middle = PATCH // 2
+    whole_t = np.floor(yaw)
+    ft = np.float32(yaw - whole_t)
+    gt = np.float32(1.0) - ft
     m = 0
     i = 0
     while i < n:
-        t, p = cells[i, THETA], owner[i]
-        cos, sin = headings[t, 0], headings[t, 1]
-        dx = moves[p, 0] * cos - moves[p, 1] * sin + moves[p, 2]
-        dy = moves[p, 0] * sin + moves[p, 1] * cos + moves[p, 3]
-        whole_x, whole_y, whole_t = np.floor(dx), np.floor(dy), np.floor(yaws[p])
-        fx, fy, ft = np.float32(dx - whole_x), np.float32(dy - whole_y), np.float32(yaws[p] - whole_t)
-        gx, gy, gt = np.float32(1.0) - fx, np.float32(1.0) - fy, np.float32(1.0) - ft
+        t = cells[i, THETA]
+        dx, dy = distance * headings[t, 0], distance * headings[t, 1]
+        whole_x, whole_y = np.floor(dx), np.floor(dy)
+        fx, fy = np.float32(dx - whole_x), np.float32(dy - whole_y)
+        gx, gy = np.float32(1.0) - fx, np.float32(1.0) - fy
         first_x, first_y = cells[i, X], cells[i, Y]
         low_x = low_y = middle
         high_x = high_y = middle
-        while i < n and cells[i, THETA] == t and owner[i] == p:
+        while i < n and cells[i, THETA] == t:
             x = offset(cells[i, X], first_x, n_x) + middle
             y = offset(cells[i, Y], first_y, n_y) + middle
             if x < 0 or y < 0 or x > PATCH - 2 or y > PATCH - 2:
@@ -154,7 +149,6 @@ def shift(
         t1 = wrap(t0 + 1, n_theta)
         from_x = (first_x + int(whole_x) + low_x - middle) % n_x
         to_y = (first_y + int(whole_y) + low_y - middle) % n_y
-        began = m
         for y in range(low_y, high_y + 2):
             row0, row1 = (t0 * n_y + to_y) * n_x, (t1 * n_y + to_y) * n_x
             to_x = from_x
@@ -167,7 +161,6 @@ def shift(
                         m = add(to_x, to_y, t1, row1 + to_x, v * ft, out_cells, out_values, m, slot)
                 to_x = wrap(to_x + 1, n_x)
             to_y = wrap(to_y + 1, n_y)
-        out_owner[began:m] = p
     return m
 
 

@@ -28,7 +28,7 @@ WINDOW = 6  # cells: half-width of the window that holds one packet
 ROOM = 4096  # active cells there is room for at first; grows when needed
 
 
-@kind("pose cells/2")
+@kind("pose cells/3")
 class PoseCells:
     """The network. `step` is one path integration and attractor iteration; RatSlam calls the stages one by one."""
 
@@ -39,11 +39,10 @@ class PoseCells:
         self._cells = np.zeros((ROOM, 4), np.int32)
         self._values = np.zeros(ROOM, np.float32)
         self._spare_cells, self._spare_values = self._cells.copy(), self._values.copy()
-        self._owner, self._peaks, self._spare_owner = (np.zeros(ROOM, np.int32) for _ in range(3))
+        self._owner, self._peaks = (np.zeros(ROOM, np.int32) for _ in range(2))
         self._bounds = np.zeros((ROOM, 6), np.int8)
         self._rows, self._ids = np.zeros((MAX_PACKETS, packet_kernels.ROW)), np.zeros(MAX_PACKETS, np.int64)
         self._spare_rows, self._spare_ids = self._rows.copy(), self._ids.copy()
-        self._moves, self._yaws = np.zeros((MAX_PACKETS, 4)), np.zeros(MAX_PACKETS)
         self._patch = np.zeros((kernels.PATCH, kernels.PATCH), np.float32)
         turns = np.arange(p.n_theta) * 2 * math.pi / p.n_theta
         self._headings = np.column_stack([np.cos(turns), np.sin(turns)])
@@ -76,12 +75,6 @@ class PoseCells:
     def memory_bytes(self) -> int:
         """Memory of all arrays: 4 bytes per cell for `slot`; the room for active cells does not grow with the network."""
         return sum(a.nbytes for a in vars(self).values() if isinstance(a, np.ndarray))
-
-    @property
-    def carry(self) -> tuple[float, float, float]:
-        """What the attractor swallowed of the winner's last motion: cells in x', y' and layers."""
-        x, y, theta = self._rows[0, packet_kernels.CARRY :].tolist()
-        return x, y, theta
 
     @property
     def packets(self) -> tuple[Packet, ...]:
@@ -136,30 +129,18 @@ class PoseCells:
                 f"got cell {cells[bad]} with {values[bad]:g} in row {bad}"
             )
         self._make_room(self._n + cells.size)
-        self._n = kernels.inject(cells, values, self._cells, self._values, self._n, self._owner, self._slot, self.shape)
+        self._n = kernels.inject(cells, values, self._cells, self._values, self._n, self._slot, self.shape)
 
     def integrate(self, distance_m: float, turn_rad: float) -> None:
-        """Shift the activity as the wheels say, each layer along its own heading. ACRA 2004 eqs. 5-9.
-
-        [ours] Each packet's movement is divided by the mean of exp(i theta) over its headings, because their spread
-        would shorten it, and the heading is that in the middle of the movement, so that where it ends does not depend on
-        the tick rate. What the attractor pulled the packet back in the last step is added. The plain twin is `carry` off.
-        test_path_integration.py::{test_gain_is_one_up_to_a_cell_and_a_half_a_step, test_an_arc_ends_where_it_should},
-        test_papers.py::test_a_run_is_that_of_the_literal_twin.
-        """
+        """Shift the activity as the wheels say, each layer along its own heading. ACRA 2004 eqs. 5-9."""
         along = require_finite("distance_m", distance_m) / self.params.cell_m
-        require_finite("turn_rad", turn_rad)
-        p = self.params
-        packet_kernels.advance(
-            self._rows, self._found, self.shape, along, turn_rad,
-            p.carry, self._moves, self._yaws,
-        )  # fmt: skip
+        layers = require_finite("turn_rad", turn_rad) * self.params.n_theta / (2 * math.pi)
+        packet_kernels.advance(self._rows, self._found, self.shape, along, layers)
         self._make_room(self._n * 8)
         m = kernels.shift(
-            self._cells, self._values, self._n, self._owner, self._moves, self._yaws, self._headings,
-            self._spare_cells, self._spare_values, self._spare_owner, self._slot, self.shape, self._patch,
+            self._cells, self._values, self._n, along, layers, self._headings, self._spare_cells, self._spare_values,
+            self._slot, self.shape, self._patch,
         )  # fmt: skip
-        self._owner, self._spare_owner = self._spare_owner, self._owner
         self._swap(m)
 
     def attract(self) -> Packet:
@@ -167,14 +148,12 @@ class PoseCells:
         p, n = self.params, self._n
         inhibit = np.float32(p.inhibit)
         kept = self._cells[:n].copy(), self._values[:n].copy()
-        if p.carry:
-            packet_kernels.weigh(self._cells, self._values, n, self.shape, 2 * WINDOW, self._rows, self._found, 1.0)
         self._excite_all(inhibit)
         self._n = attractor.inhibit_and_normalise(self._cells, self._values, self._n, self._slot, inhibit)
         gone = self._n == 0
         if gone:
             self._put(*kept)
-        self._find(moved=p.carry)
+        self._find()
         if gone:
             raise ValueError(
                 f"inhibit = {p.inhibit} is above the activity of every cell; take less (nothing was changed)"
@@ -234,24 +213,19 @@ class PoseCells:
 
         self._cells, self._values, self._bounds = grow(self._cells), grow(self._values), grow(self._bounds)
         self._spare_cells, self._spare_values = grow(self._spare_cells), grow(self._spare_values)
-        self._owner, self._peaks, self._spare_owner = grow(self._owner), grow(self._peaks), grow(self._spare_owner)
+        self._owner, self._peaks = grow(self._owner), grow(self._peaks)
 
-    def _find(self, *, moved: bool = False) -> None:
-        """Find the packets in the activity as it is now. Each has the id of the one that was expected there.
-
-        moved: the attractor has moved them, which is subtracted from their carry.
-        """
+    def _find(self) -> None:
+        """Find the packets in the activity as it is now. Each has the id of the one that was expected there."""
         found = -1
         while found < 0:
             clusters, found = packet_kernels.find(
                 self._cells, self._values, self._n, self._slot, self.shape, WINDOW, self._owner, self._peaks,
-                self._bounds, self._headings, self._rows, self._ids, self._found, self._spare_rows, self._spare_ids, moved,
+                self._bounds, self._headings, self._rows, self._ids, self._found, self._spare_rows, self._spare_ids,
             )  # fmt: skip
             if clusters > len(self._spare_rows):
                 self._spare_rows = np.zeros((2 * clusters, packet_kernels.ROW))
                 self._spare_ids = np.zeros(2 * clusters, np.int64)
-            if clusters > len(self._moves):  # rows swap with their spares, moves do not: each grows by itself
-                self._moves, self._yaws = np.zeros((2 * clusters, 4)), np.zeros(2 * clusters)
         self._rows, self._spare_rows = self._spare_rows, self._rows
         self._ids, self._spare_ids = self._spare_ids, self._ids
         self._found = found

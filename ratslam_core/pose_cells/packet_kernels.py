@@ -11,9 +11,8 @@ from numpy.typing import NDArray
 
 from ratslam_core.pose_cells.activity_kernels import THETA, Cells, Shape, Slot, Values, X, Y, cluster, offset
 
-MASS, COS, SIN, CARRY = 3, 4, 5, 6  # columns after x, y, theta; CARRY is three columns
-ROW = 9
-LEAST_AGREEMENT = 0.25  # of headings, 1 = all the same
+MASS, COS, SIN = 3, 4, 5  # columns after x, y, theta
+ROW = 6
 
 
 @njit(cache=True, nogil=True)
@@ -33,19 +32,15 @@ def find(
     n_old: int,
     new: NDArray[np.float64],
     new_ids: NDArray[np.int64],
-    carry: bool,
 ) -> tuple[int, int]:
     """The packets in the activity as it is, written to `new`, each with the id of the one that was expected there.
 
-    carry: the attractor has just moved them, and what it moved is subtracted from their carry. Returns how many clusters
-    and how many packets there are; when `new` has not as many rows as there are clusters, nothing is written, and there
-    are -1 packets.
+    Returns how many clusters and how many packets there are; when `new` has not as many rows as there are clusters,
+    nothing is written, and there are -1 packets.
     """
     clusters, _ = cluster(cells, values, n, shape, window, 0, owner, peaks, bounds)
     if clusters > len(new):
         return clusters, -1
-    if carry:
-        weigh(cells, values, n, shape, 2 * window, old, n_old, -1.0)
     join_flanks(cells, values, slot, shape, owner, peaks, clusters)
     found = packet_rows(cells, values, n, shape, owner, peaks, clusters, headings, new)
     follow(old, old_ids, n_old, new, new_ids, found, shape, window)
@@ -94,7 +89,7 @@ def packet_rows(
 ) -> int:
     """Write the packets, heaviest first; returns how many. Clusters with the same peak are one. `owner` then names packets.
 
-    out rows: x, y, theta (cells, fractions), mass, mean cosine and sine of the headings; the carry is cleared.
+    out rows: x, y, theta (cells, fractions), mass, mean cosine and sine of the headings.
     """
     n_theta, n_y, n_x = shape
     rank = np.empty(clusters, np.int64)
@@ -170,8 +165,6 @@ def follow(
                     best, least = q, apart
         if best >= 0:
             new_ids[best] = old_ids[p]
-            for k in range(CARRY, new.shape[1]):
-                new[best, k] = old[p, k]
     free = 1
     for q in range(n_new):
         if new_ids[q] == 0:
@@ -181,94 +174,10 @@ def follow(
 
 
 @njit(cache=True, nogil=True)
-def advance(
-    rows: NDArray[np.float64],
-    n: int,
-    shape: Shape,
-    distance: float,
-    turn: float,
-    exact: bool,
-    moves: NDArray[np.float64],
-    yaws: NDArray[np.float64],
-) -> None:
-    """Move the rows of packets on, and write what `shift` needs to moves and yaws. distance: cells; turn: rad.
-
-    exact: the robot drives an arc, whose chord points along the heading in its middle; and the layers of a packet have
-    different headings, which multiplies its movement by the mean of exp(i theta), so that it is divided by that complex
-    number, whose modulus counts as at least LEAST_AGREEMENT. Else straight on, as in the papers.
-    """
-    unit = 2.0 * np.pi / shape[0]
-    bend = turn / 2 if exact else 0.0
-    chord = distance * np.sin(bend) / bend if bend != 0.0 else distance
+def advance(rows: NDArray[np.float64], n: int, shape: Shape, distance: float, yaw: float) -> None:
+    """Move the rows of packets to where `shift` takes their activity. distance: cells; yaw: layers."""
     for p in range(n):
         row = rows[p]
-        heading = unit * (row[THETA] + row[CARRY + 2]) + bend
-        to_x, to_y = chord * np.cos(heading), chord * np.sin(heading)
-        if exact:
-            agreement = max(row[COS] ** 2 + row[SIN] ** 2, LEAST_AGREEMENT**2)
-            moves[p, 0] = (to_x * row[COS] + to_y * row[SIN]) / agreement
-            moves[p, 1] = (to_y * row[COS] - to_x * row[SIN]) / agreement
-        else:
-            moves[p, 0], moves[p, 1] = distance, 0.0
-            to_x = moves[p, 0] * row[COS] - moves[p, 1] * row[SIN]
-            to_y = moves[p, 0] * row[SIN] + moves[p, 1] * row[COS]
-        moves[p, 2], moves[p, 3] = row[CARRY], row[CARRY + 1]
-        yaws[p] = turn / unit + row[CARRY + 2]
-        row[X] = (row[X] + to_x + row[CARRY]) % shape[2]
-        row[Y] = (row[Y] + to_y + row[CARRY + 1]) % shape[1]
-        row[THETA] = (row[THETA] + yaws[p]) % shape[0]
-        row[CARRY:] = 0.0
-
-
-@njit(cache=True, nogil=True)
-def _half_way_to_the_next(rows: NDArray[np.float64], packets: int, shape: Shape) -> NDArray[np.float64]:
-    """Squares of half the distance from each packet to the nearest other; a cell within that has no nearer packet."""
-    own = np.full(packets, np.inf)
-    for p in range(packets):
-        for q in range(p):
-            apart = 0.0
-            for axis in range(3):
-                apart += offset(rows[p, axis], rows[q, axis], shape[2 - axis]) ** 2
-            own[p], own[q] = min(own[p], apart / 4), min(own[q], apart / 4)
-    return own
-
-
-@njit(cache=True, nogil=True)
-def weigh(
-    cells: Cells, values: Values, n: int, shape: Shape, reach: int, rows: NDArray[np.float64], packets: int, sign: float
-) -> None:
-    """Add sign times each packet's centre, as the offset from the place in its row, to the row's carry.
-
-    A cell counts for the nearest packet that is within `reach` along each axis. So the same part of the torus counts
-    before and after the attractor, however packets grow and shrink.
-    """
-    n_theta, n_y, n_x = shape
-    wx, wy, wt = min(reach, (n_x - 1) // 2), min(reach, (n_y - 1) // 2), min(reach, (n_theta - 1) // 2)
-    sums = np.zeros((packets, 4))
-    own = _half_way_to_the_next(rows, packets, shape)
-    before = 0
-    for i in range(n):
-        mine, least = -1, np.inf
-        x = y = t = 0.0
-        for k in range(packets):
-            p = (before + k) % packets  # the nearest is most often that of the cell before
-            dx = offset(cells[i, X], rows[p, X], n_x)
-            dy = offset(cells[i, Y], rows[p, Y], n_y)
-            dt = offset(cells[i, THETA], rows[p, THETA], n_theta)
-            apart = dx * dx + dy * dy + dt * dt
-            if apart < least and abs(dx) <= wx and abs(dy) <= wy and abs(dt) <= wt:
-                mine, least = p, apart
-                x, y, t = dx, dy, dt
-                if apart < own[p]:
-                    break
-        if mine >= 0:
-            before = mine
-            v = values[i]
-            sums[mine, X] += v * x
-            sums[mine, Y] += v * y
-            sums[mine, THETA] += v * t
-            sums[mine, MASS] += v
-    for p in range(packets):
-        for axis in range(3):
-            if sums[p, MASS] > 0.0:
-                rows[p, CARRY + axis] += sign * sums[p, axis] / sums[p, MASS]
+        row[X] = (row[X] + distance * row[COS]) % shape[2]
+        row[Y] = (row[Y] + distance * row[SIN]) % shape[1]
+        row[THETA] = (row[THETA] + yaw) % shape[0]

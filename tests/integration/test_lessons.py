@@ -88,10 +88,10 @@ def test_every_symbol_of_its_formulas_is_told(subtests: pytest.Subtests) -> None
             assert any(symbol.parameter for formula in lesson.formulas for symbol in formula.symbols)
 
 
-def test_there_are_twenty_three_and_each_has_its_texts() -> None:
+def test_there_are_twenty_two_and_each_has_its_texts() -> None:
     lessons = StoredLessons()
     cards = lessons.cards()
-    assert len(cards) >= 23
+    assert len(cards) >= 22
     assert len({card.title for card in cards}) == len(cards)
     for card in cards:
         text = lessons.text(card.name)
@@ -99,4 +99,4 @@ def test_there_are_twenty_three_and_each_has_its_texts() -> None:
         assert all((text.watch, text.sandbox, text.formulas)), card.name
         assert 0 < card.minutes <= 15
     assert len(ADDITIONS) == 17
-    assert "Seventeen" in NAMED["additions"].text
+    assert "Fourteen" in NAMED["additions"].text

@@ -69,24 +69,27 @@ test("one addition is chosen by its name, and the strip tells what differs", () 
     await page.choose(chosen, "exact solver");
     await page.says("#brains-about", ": sweeps alone lag behind a growing map.");
     assert.ok(!page.shown("#brains-addition-now"));
-    await page.choose(chosen, "carry");
+    await page.choose(chosen, "pace floor");
     await page.says("#brains-addition-now", /^From now on without it$/);
     await page.click("#brains-addition-anew", "Begin again without it");
     await page.told("Two brains, the same senses");
     await page.says("#beside-first", "ours");
-    await page.says("#beside-second", "without carry");
+    await page.says("#beside-second", "without pace floor");
     await page.click("#beside-changed summary");
-    await page.says("#beside-changed thead", "without carry");
-    await page.says("#beside-changed tbody tr", /^pose_cells.carryonoff$/);
+    await page.says("#beside-changed thead", "without pace floor");
+    await page.says("#beside-changed tbody tr", /^experience_map.pace_flooronoff$/);
     page.press("Escape");
     await command("end_comparison");
-    await command("set_parameter", { name: "pose_cells.carry", value: false });
+    await command("set_parameter", { name: "experience_map.pace_floor", value: false });
     await menu(page);
-    assert.equal(page.find(chosen).value, "carry");
+    assert.equal(page.find(chosen).value, "pace floor");
     await page.says("#brains-addition-now", /^From now on with it$/);
     await page.click("#brains-addition-now");
-    await page.says("#beside-second", "with carry");
-    await until("it is told", () => page.find("#beside-changed summary").title === "pose_cells.carry: off → on");
+    await page.says("#beside-second", "with pace floor");
+    await until(
+      "it is told",
+      () => page.find("#beside-changed summary").title === "experience_map.pace_floor: off → on",
+    );
     await command("end_comparison");
-    await command("set_parameter", { name: "pose_cells.carry", value: true });
+    await command("set_parameter", { name: "experience_map.pace_floor", value: true });
   }));

@@ -6,11 +6,10 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from ratslam_core import PoseCellParams, PoseCells
-from ratslam_core.pose_cells.network import WINDOW
 from tests.unit.ratslam_core import literal
 
 sizes = st.tuples(st.integers(8, 21), st.integers(8, 21), st.integers(8, 21))
@@ -71,28 +70,3 @@ def test_activity_is_a_distribution_whatever_happens(dense: np.ndarray, drives: 
         assert 0 <= winner.y < dense.shape[1]
         assert -math.pi < winner.heading_rad <= math.pi
         assert sum(p.mass for p in pose_cells.packets) <= 1 + 1e-5
-
-
-def undecided(pose_cells: PoseCells, places: list[np.ndarray]) -> bool:
-    """Whether a cell is as near to one packet as to another: it may count for either."""
-    size, cells = np.array(pose_cells.shape), np.argwhere(pose_cells.activity)[:, None]
-    squares = np.sort((((cells - np.array(places) + size / 2) % size - size / 2) ** 2).sum(axis=2), axis=1)
-    return bool((np.diff(squares[:, :2], axis=1) < 1e-6).any())
-
-
-@EXAMPLES
-@given(activities(), st.floats(-1.0, 1.0), st.floats(-3, 3))
-@pytest.mark.slow
-def test_carry_is_what_the_attractor_took_from_the_winner(dense: np.ndarray, cells: float, layers: float) -> None:
-    pose_cells = network(dense)
-    pose_cells.attract()
-    pose_cells.integrate(cells * 0.25, layers * 2 * math.pi / dense.shape[0])
-    ids = [p.id for p in pose_cells.packets]
-    places = [np.array([p.heading_rad * dense.shape[0] / (2 * math.pi), p.y, p.x]) for p in pose_cells.packets]
-    assume(len(places) < 8 and not undecided(pose_cells, places))  # all are reported
-    before = literal.centres(pose_cells.activity.astype(np.float64), places, 2 * WINDOW)
-    winner = pose_cells.attract()
-    assume(winner.id in ids and not undecided(pose_cells, places))
-    after = literal.centres(pose_cells.activity.astype(np.float64), places, 2 * WINDOW)
-    mine = ids.index(winner.id)
-    assert pose_cells.carry[::-1] == pytest.approx(before[mine] - after[mine], abs=1e-5)

@@ -104,9 +104,9 @@ def test_an_addition_begins_by_its_name_and_the_page_is_told_which_are_off() -> 
     }
     tell(engine, type="compare_brains", pair="law of evidence", since="now")
     assert (shown(engine).second.name, shown(engine).since_s) == ("without law of evidence", 2.0)
-    tell(engine, type="set_parameter", name="pose_cells.carry", value=False)
+    tell(engine, type="set_parameter", name="local_view.facing", value=False)
     tell(engine, type="set_parameter", name="experience_map.familiar_ground", value=False)
-    off = ("carry", "familiar ground")
+    off = ("heading from the shift", "familiar ground")
     assert engine.snapshot().additions_off == m.AdditionsOff(off, off)
     tell(engine, type="compare_brains", pair="familiar ground")
     assert (shown(engine).first.name, shown(engine).second.name) == ("as set", "with familiar ground")
@@ -165,7 +165,7 @@ def test_what_cannot_be_is_refused_and_the_run_goes_on(subtests: pytest.Subtests
         ({"pair": "cells", "values": {"pose_cells.n_x": 8}}, "either a pair or values"),
         ({"pair": "cells-64"}, "the first brain is that already: nothing would differ; what would: papers, vision"),
         ({"pair": "nobody"}, "there is no pair 'nobody'; expected one of: papers, vision"),
-        ({"pair": "exact"}, "no-map; or an addition: carry, capped injection, "),
+        ({"pair": "exact"}, "no-map; or an addition: image and sonars, waiting time of new views, "),
         ({"pair": "exact solver", "since": "now"}, "experience_map.exact_solver cannot change while a brain runs"),
         ({"values": {"pose_cells.n_x": 64}}, "nothing would differ"),
         ({"values": {"pilot.seek": False}}, "pilot.seek cannot differ"),

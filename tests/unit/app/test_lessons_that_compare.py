@@ -59,11 +59,11 @@ def test_the_second_brain_is_the_first_again_when_nothing_is_different_yet() -> 
 
 
 def test_one_addition_can_be_missing_by_its_name() -> None:
-    words = "{error_m of ours} and {error_m of without carry} after {path_m}."
-    (one,) = run_lesson(short_lesson(show={**SHOW, "compare": "carry"}, outcome=words))
+    words = "{error_m of ours} and {error_m of without pace floor} after {path_m}."
+    (one,) = run_lesson(short_lesson(show={**SHOW, "compare": "pace floor"}, outcome=words))
     assert one.session.companion is not None
-    assert one.session.companion.values == {"pose_cells.carry": False}
-    assert [label for label, _ in measured_in([one])] == ["without carry", "ours"]
+    assert one.session.companion.values == {"experience_map.pace_floor": False}
+    assert [label for label, _ in measured_in([one])] == ["without pace floor", "ours"]
 
 
 def test_what_cannot_be_compared_is_told_in_a_sentence(subtests: pytest.Subtests) -> None:
@@ -87,15 +87,15 @@ def test_what_is_compared_from_a_lesson_begins_as_the_lesson_did_and_takes_its_s
     lesson = short_lesson(scene={**SCENE, "seed": 9, "set": {"robot.gyro_bias": 0.02}})
     engine = an_engine(OFFICE)
     engine.begin_lesson(Teaching(lesson, 9, engine.next_config))
-    for pair in ("carry", "law of evidence"):  # the second begins from what is no longer the lesson's own run
+    for pair in ("pace floor", "law of evidence"):  # the second begins from what is no longer the lesson's own run
         tell(engine, type="compare_brains", pair=pair)
         session = engine.run.session
         assert (engine.run.lesson, session.seed, session.tick_count) == (None, 9, 0)
         assert session.config.robot.gyro_bias == 0.02
     assert engine.next_config == Config()
-    tell(engine, type="set_parameter", name="pose_cells.carry", value=False)
+    tell(engine, type="set_parameter", name="experience_map.pace_floor", value=False)
     tell(engine, type="reset")
-    assert engine.run.session.config == Config().with_value("pose_cells.carry", False)
+    assert engine.run.session.config == Config().with_value("experience_map.pace_floor", False)
 
 
 def test_on_the_page_both_stand_there_once_more_too_and_who_ends_it_breaks_it_off() -> None:

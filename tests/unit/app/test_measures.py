@@ -48,7 +48,7 @@ def test_without_errors_the_packet_ends_where_the_moves_lead() -> None:
     scores, _ = measured(["end_off_m"], square, local_view__enabled=False)
     assert scores["end_off_m"] < 0.1
     off, _ = measured(["end_off_m"], square, local_view__enabled=False, robot__odometry_scale_error=0.5)
-    assert off["end_off_m"] == pytest.approx(0.5 * math.hypot(1.0, 1.0), abs=0.15)
+    assert off["end_off_m"] == pytest.approx(0.5 * math.hypot(1.0, 1.0), abs=0.3)  # less what the attractor takes back
 
 
 def test_the_turn_of_the_cells_is_that_of_the_robot_less_the_bias() -> None:
@@ -115,7 +115,7 @@ def test_consistency_is_the_longest_time_off() -> None:
 
 def test_false_and_true_snaps_are_all_snaps() -> None:
     """Where a single look moves the packet, and it was carried unseen, it jumps often."""
-    eager: dict[str, Any] = {"local_view__capped": False, "local_view__rest": 0.0, "local_view__learn_first": True}
+    eager: dict[str, Any] = {"local_view__learning_rate": 0.15, "local_view__saturation": 0.02, "local_view__rest": 0.0}
     explore, carried = Explore(do="explore", minutes=3), Kidnap(do="kidnap", least_m=3)
     scores, course = measured(
         ["false_snaps"], explore, carried, explore, world="office", kidnap__enabled=False, **eager

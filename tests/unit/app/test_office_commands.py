@@ -95,7 +95,7 @@ def test_presets_are_configs() -> None:
     assert preset("pioneer-2dxe-2004", Config()) == preset("Pioneer 2DXE 2004", Config())  # on a command line
     for config, expected in (
         (preset("Pioneer 2DXE 2004", Config()), "Pioneer 2DXE 2004"), (preset("ideal", Config()), "ideal"),
-        (Config(), "ours"), (Config().with_value("pose_cells.carry", False), ""),
+        (Config(), "ours"), (Config().with_value("local_view.facing", False), ""),
         (preset("paper-2005", preset("ideal", Config())), "paper-2005"),
     ):  # fmt: skip
         assert preset_of(config) == expected

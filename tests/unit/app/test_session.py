@@ -146,7 +146,7 @@ def test_a_kidnap_or_parameter_that_cannot_be_changes_nothing(subtests: pytest.S
         (("nothing", 1), "unknown parameter 'nothing'"),
         (("pilot.cruise_speed", 3.0), "pilot.cruise_speed must be between 0.05 and 0.5 m/s, got 3.0"),
         (("pilot.cruise_speed", "fast"), "pilot.cruise_speed must be a number, got 'fast'"),
-        (("pose_cells.carry", 1), "pose_cells.carry must be true or false, got 1"),
+        (("local_view.facing", 1), "local_view.facing must be true or false, got 1"),
         (("robot.light", math.nan), "robot.light must be between 0.1 and 2, got nan"),
     ]
     for give, rows in ((session.kidnap, kidnaps), (session.set_parameter, parameters)):

@@ -28,7 +28,7 @@ class Bench:
     """Pose cells and views that a test links and looks at by hand."""
 
     def __init__(self) -> None:
-        self.pose_cells, self.association = PoseCells(), VisualAssociation(LocalViewParams(rest=0.0, injection=0.3))
+        self.pose_cells, self.association = PoseCells(), VisualAssociation(LocalViewParams(rest=0.0, saturation=0.01))
         self.causes = SnapCauses(SimpleNamespace(brain=self, time_s=0.0))  # type: ignore[arg-type]
 
     def learn(self, view: int, place: tuple[int, int, int]) -> None:

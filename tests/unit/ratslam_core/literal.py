@@ -58,17 +58,12 @@ def gaussian(sigma: float, radius: int) -> list[float]:
 
 
 def shift(P: Array, along: float, yaw: float) -> Array:
-    """A5-A9: every cell's activity is divided over a cube of 2 x 2 x 2 cells, shifted along the heading of its own layer.
-
-    [ours] The heading is that in the middle of the movement, and the movement is the chord of an arc.
-    """
+    """A5-A9: every cell's activity is divided over a cube of 2 x 2 x 2 cells, shifted along the heading of its own layer."""
     n_theta, n_y, n_x = P.shape
     result = np.zeros_like(P)
-    turn = yaw * 2 * math.pi / n_theta
-    chord = along * math.sin(turn / 2) / (turn / 2) if turn else along
     for t, y, x in zip(*np.nonzero(P), strict=True):
-        heading = 2 * math.pi * t / n_theta + turn / 2
-        offsets = chord * math.cos(heading), chord * math.sin(heading), yaw
+        heading = 2 * math.pi * t / n_theta
+        offsets = along * math.cos(heading), along * math.sin(heading), yaw
         wx, wy, wt = (math.floor(v) for v in offsets)
         fx, fy, ft = (v - math.floor(v) for v in offsets)
         for a in (0, 1):
@@ -96,18 +91,3 @@ def inhibit(P: Array, phi: float) -> Array:
     """A11-A12."""
     left = np.maximum(P - phi, 0)
     return left / left.sum()
-
-
-def centres(P: Array, places: list[Array], reach: int) -> list[Array]:
-    """For each place (theta, y, x), the centre of the activity nearest to it and within `reach` along each axis, as an offset."""
-    size = np.array(P.shape)
-    sums, masses = np.zeros((len(places), 3)), np.zeros(len(places))
-    for cell in np.argwhere(P):
-        gaps = [(cell - place + size / 2) % size - size / 2 for place in places]
-        near = [bool(np.all(np.abs(gap) <= np.minimum(reach, (size - 1) // 2))) for gap in gaps]
-        squares = [float(gap @ gap) if ok else math.inf for gap, ok in zip(gaps, near, strict=True)]
-        mine = int(np.argmin(squares))
-        if near[mine]:
-            sums[mine] += P[tuple(cell)] * gaps[mine]
-            masses[mine] += P[tuple(cell)]
-    return [s / m if m else np.zeros(3) for s, m in zip(sums, masses, strict=True)]

@@ -17,7 +17,7 @@ from .paper_twin import PaperTwin
 # With the equations as they are printed, which the twin follows; `presets._READ` reads some otherwise.
 SMALL: dict[str, Value] = {
     "local_view.learning_rate": 0.15,
-    "local_view.saturation": RatSlamParams().local_view.saturation,
+    "local_view.saturation": 0.02,
     "experience_map.sweep": "by link",
     "experience_map.zone_offset": False,
     "pose_cells.n_x": 21,

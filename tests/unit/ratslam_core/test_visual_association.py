@@ -64,17 +64,20 @@ def injected(association: VisualAssociation, what: Recognition, pose_cells: Pose
 
 def test_a_view_injects_from_the_moment_it_is_as_old_as_rest() -> None:
     """Each has its own age. While it is young it learns nothing either."""
-    association, pose_cells = VisualAssociation(LocalViewParams(rest=2.0, learning_rate=0.01)), PoseCells()
+    association, pose_cells = (
+        VisualAssociation(LocalViewParams(rest=2.0, learning_rate=0.01, saturation=1.0)),
+        PoseCells(),
+    )
     # at 0.5, 1.0 ... seconds
     views = [(0, True), (0, False), (1, True), (0, False), (0, False), (1, False), (1, False)]
     amounts = [injected(association, seen(*one), pose_cells) for one in views]
-    assert amounts == pytest.approx([0, 0, 0, 0, 0.01, 0, 0.01], abs=1e-6)
+    assert amounts == pytest.approx([0, 0, 0, 0, 0.02, 0, 0.02], abs=1e-6)
     learnt = association.links.of(0)[1].sum()
     assert learnt == pytest.approx(0.02, rel=1e-3)  # when it was recruited, and when it injected
 
 
 def test_what_was_injected_is_told_and_is_no_part_of_the_state() -> None:
-    association, pose_cells = VisualAssociation(LocalViewParams(rest=0.0, learn_first=False)), PoseCells()
+    association, pose_cells = VisualAssociation(LocalViewParams(rest=0.0)), PoseCells()
     injected(association, seen(0, True), pose_cells)
     for _ in range(3):
         more = injected(association, seen(0), pose_cells)
@@ -90,14 +93,12 @@ def test_what_was_injected_is_told_and_is_no_part_of_the_state() -> None:
     assert encode(association).digest() == before  # nothing seen changes nothing
 
 
-def test_what_is_injected_was_learnt_before_unless_learning_comes_first() -> None:
-    for learn_first in (False, True):
-        params = LocalViewParams(rest=0.0, learning_rate=0.01, decay=0.0, saturation=1.0, learn_first=learn_first)
-        association, pose_cells = VisualAssociation(params), PoseCells()
-        injected(association, seen(0, True), pose_cells)
-        for sight in range(1, 4):
-            assert association.links.of(0)[1].sum() == pytest.approx(0.01 * sight, abs=1e-6)
-            assert injected(association, seen(0), pose_cells) == pytest.approx(0.01 * (sight + learn_first), abs=1e-6)
+def test_a_view_learns_and_then_injects_what_it_has_learnt() -> None:
+    params = LocalViewParams(rest=0.0, learning_rate=0.01, decay=0.0, saturation=1.0)
+    association, pose_cells = VisualAssociation(params), PoseCells()
+    for sight in range(1, 4):
+        assert injected(association, seen(0, sight == 1), pose_cells) == pytest.approx(0.01 * sight, abs=1e-6)
+        assert association.links.of(0)[1].sum() == pytest.approx(0.01 * sight, abs=1e-6)
 
 
 def test_the_adaptive_rate_follows_vision_and_confidence() -> None:

@@ -24,14 +24,14 @@ test("all additions are offered once, and a group that would be empty is not", (
     additionGroups(ON).map((group) => group.names),
     [names],
   );
-  const groups = additionGroups({ beginning: ["carry"], now: [] });
-  assert.deepEqual([groups.length, groups[1].names], [2, ["carry"]]);
+  const groups = additionGroups({ beginning: ["pace floor"], now: [] });
+  assert.deepEqual([groups.length, groups[1].names], [2, ["pace floor"]]);
   assert.deepEqual(new Set(groups.flatMap((group) => group.names)), new Set(names));
 });
 
 test("an addition says what it adds and why, its buttons which way it goes; some begin with a run only", () => {
-  const { about, ...buttons } = additionChoice("carry", { beginning: ["carry"], now: [] });
-  assert.match(about, /^A packet goes as far as the wheels say, .* next movement, .*: an attractor pins slow packets/);
+  const { about, ...buttons } = additionChoice("pace floor", { beginning: ["pace floor"], now: [] });
+  assert.match(about, /^A link takes at least as long as .*: a route over many short links would promise/);
   assert.deepEqual(buttons, { anew: "Begin again with it", now: "From now on without it" });
   const { anew, now } = additionChoice("exact solver", ON);
   assert.deepEqual([anew, now], ["Begin again without it", ""]);
