@@ -41,8 +41,8 @@ class Until(Part):
         return {
             "closure": "a loop closes",
             "snap": "the winner snaps",
-            "lost": "the robot feels lost",
-            "found again": "the robot knows again where it is",
+            "lost": "the robot is lost",
+            "found again": "the robot has recovered",
             "packets": f"{self.count} packets compete",
             "goal reached": "the goal is reached",
             "place": f"the robot comes to {where}",

@@ -15,9 +15,8 @@ from web.messages import Packet as PacketShown
 
 MOST_MARKS = 12
 WORDS = {
-    "closure": "a loop closes", "snap": "a snap", "lost": "feels lost", "recovered": "knows again where it is",
-    "kidnap": "put down here", "arrived": "arrived", "false": "a false look", "packet": "a packet put in",
-    "link": "a link is deleted", "reached": "reached",
+    "closure": "loop closed", "snap": "snap", "lost": "lost", "recovered": "recovered", "kidnap": "put down here",
+    "arrived": "arrived", "false": "false observation", "packet": "packet put in", "link": "link deleted", "reached": "reached",
 }  # fmt: skip
 
 Spot = tuple[float, float, float]  # x and y in cells, heading

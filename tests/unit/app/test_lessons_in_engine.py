@@ -231,7 +231,7 @@ def test_when_it_is_over_the_snap_that_it_shows_is_explained_and_marked_from_pac
     over, last, why = shown(engine), engine.run.history.events.last_snap, engine.snapshot().inspected
     assert isinstance(why, m.WhyReport)
     assert (over.state, why.kind) == ("compared", "snap")
-    (snap,) = (mark for mark in over.marks if (mark.plate, mark.words) == ("cells", "a snap"))
+    (snap,) = (mark for mark in over.marks if (mark.plate, mark.words) == ("cells", "snap"))
     assert last is not None
     assert snap.start is not None
     assert (snap.x, snap.y) == pytest.approx((last.end.x, last.end.y), abs=1e-3)

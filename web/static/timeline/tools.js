@@ -181,7 +181,7 @@ export class Seeker {
 export const CHOICES = [
   { words: "a loop closes", wish: { what: "closure" } },
   { words: "it is lost", wish: { what: "lost" } },
-  { words: "it knows again where it is", wish: { what: "found again" } },
+  { words: "it has recovered", wish: { what: "found again" } },
   { words: "the packet snaps", wish: { what: "snap" } },
   { words: "it is at its goal", wish: { what: "goal reached" } },
 ];
