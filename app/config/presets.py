@@ -86,7 +86,7 @@ def _plain(name: str) -> str:
 
 NAMES = "papers", "vision", "cells", "cells-64", "rate", "no-map"
 FEW, MANY = 8, 64  # cells along x' and y'
-SLOW, USUAL = 0.02, 0.15
+SLOW, USUAL = 0.0015, 0.015
 _ADDITIONS = {addition.name: addition for addition in ADDITIONS}
 
 

@@ -164,8 +164,8 @@ class VisualAssociation:
 
         strength: how sure the recognition is, 0 to 1; lost: the robot knows that it was carried away.
 
-        [ours] A view younger than `rest` neither injects nor learns on. Otherwise it would hold the packet back where it has
-        just been learnt. test_visual_association.py::test_a_young_view_does_not_hold_the_packet_back.
+        [ours] A view younger than `rest` does not inject. Otherwise it would hold the packet back where it has just been
+        learnt. test_visual_association.py::test_a_young_view_does_not_hold_the_packet_back.
         """
         self._time_s += dt
         self.injection = None
@@ -174,10 +174,8 @@ class VisualAssociation:
         if seen.view < 0:
             return
         self.learning_rate = self._rate(strength, 0.0 if lost else min(1.0, pose_cells.winner.mass))
-        young = self.age_s(seen.view) < self.params.rest
-        if seen.recruited or not young:
-            self.links.learn(seen.view, *pose_cells.active, pose_cells.slot, self.learning_rate)
-        if young:
+        self.links.learn(seen.view, *pose_cells.active, pose_cells.slot, self.learning_rate)
+        if self.age_s(seen.view) < self.params.rest:
             return
         cells, injection = self.links.recall(seen.view, lost)
         pose_cells.inject(cells, injection)

@@ -98,5 +98,5 @@ def test_there_are_twenty_two_and_each_has_its_texts() -> None:
         assert text is not None
         assert all((text.watch, text.sandbox, text.formulas)), card.name
         assert 0 < card.minutes <= 15
-    assert len(ADDITIONS) == 17
-    assert "Fourteen" in NAMED["additions"].text
+    assert len(ADDITIONS) == 15
+    assert "Fifteen" in NAMED["additions"].text

@@ -68,7 +68,7 @@ def test_all_lessons_in_short_and_one_with_formulas_whose_symbols_name_their_par
     formula = text["formulas"][0]
     assert formula["mathml"].startswith("<math")
     assert 'data-parameter="local_view.saturation"' in formula["mathml"]
-    assert [formula["symbols"][-1][key] for key in ("parameter", "value")] == ["local_view.saturation", "0.02"]
+    assert [formula["symbols"][-1][key] for key in ("parameter", "value")] == ["local_view.saturation", "0.0007"]
 
 
 def test_what_is_not_there_is_said_and_without_a_gallery_there_is_nothing(client: TestClient, monkeypatch) -> None:
