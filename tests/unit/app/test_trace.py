@@ -32,7 +32,7 @@ MADE = Trial(
 )  # fmt: skip
 TO_A_GOAL = replace(
     MADE,
-    seed=5,
+    seed=9,
     protocol=(
         Tag(do="tag", places=["printer"]),
         Explore(do="explore", minutes=4),
