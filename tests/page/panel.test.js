@@ -115,9 +115,9 @@ test("Tune opens with the dozen of a lecture; sections are closed, and say how m
     assert.ok(page.all(`${tune} details`).every((section) => !section.open));
     const [first] = dozen().filter((knob) => knob.textContent.includes("inhibit"));
     await page.fill(first.querySelector("input"), "0.001");
-    await page.says(`${tune} details`, "1 changed8");
+    await page.says(`${tune} details`, "1 changed7");
     await page.fill(`${tune} [type=search]`, "φ inhibit");
-    await page.says(`${tune} details`, "1 of 8");
+    await page.says(`${tune} details`, "1 of 7");
     assert.ok(!first.checkVisibility(), "it is found in its section");
     await page.fill(`${tune} [type=search]`, "");
     await page.click(first.querySelector("button"));

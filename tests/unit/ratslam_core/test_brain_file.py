@@ -128,7 +128,7 @@ MAP, GRAPH, KNOWN = "experience_map", "experience_map.transitions.graph", "exper
         (reshape("pose_cells._owner", lambda a: a.astype(np.int64)), "must have 1 dimensions of int32"),
         (put("association.links._cells", slice(None), 2**30), "a linked cell must be from 0 to"),
         (put("association.links._blocks", (0, 0), -5), "blocks of links: start must be from 0 to"),
-        (put("association.links._blocks", (5, 2), 1), "must"),
+        (put("association.links._blocks", (0, 2), 1), "must"),
         (write("association.links._end", 10**7), "their end must be a whole number"),
         (write("local_view._count", 2000), "the number of views must be a whole number from 0 to 1024"),
         (reshape("local_view.features", lambda a: a[:5]), r"features must have shape \(104\)"),
