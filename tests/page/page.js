@@ -50,6 +50,8 @@ export async function open(use, { path = "", base = url, first = false, kept = {
     const page = new Page(tab.mainFrame.window);
     if (page.find("#timeline")) await until("it is alive", () => page.document.body.dataset.alive);
     await use(page);
+  } catch (failure) {
+    throw wrong.length ? new Error(`${failure}; what went wrong before: ${wrong.join("\n")}`) : failure;
   } finally {
     closing = true;
     const { window } = /** @type {any} */ (tab.mainFrame);

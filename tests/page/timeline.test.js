@@ -32,6 +32,24 @@ async function shows(page, tick) {
 /** Where a time is on the timeline, of about a minute. @param {number} time_s @returns {[number, number]} */
 const x = (time_s) => [6 + (1188 * time_s) / 60, 20];
 
+test("what comes last is drawn, however soon it comes after what went before", () =>
+  fresh(async (page) => {
+    const socket = page.window.sockets.at(-1);
+    const hear = socket.onmessage;
+    /** @type {any} */
+    let last;
+    socket.onmessage = (/** @type {{ data: string }} */ event) => {
+      const message = typeof event.data === "string" ? JSON.parse(event.data) : {};
+      if (message.type === "state") last = message;
+      hear(event);
+    };
+    await command("step", { ticks: 10 });
+    await shows(page, 10);
+    page.hear({ type: "events", run: 1, fresh: false, events: [] }); // drawn at once
+    page.hear({ ...last, state: { ...last.state, tick: 11, time_s: 1.1 } });
+    await until("it says so", () => page.find("#timeline").getAttribute("aria-valuenow") === "1.1");
+  }));
+
 test("drag, step, and come back", () =>
   driven(async (page) => {
     const before = await state();

@@ -150,14 +150,12 @@ export class Timeline {
 
   // ---------------------------------------------------------------- drawing
 
-  /** @param {boolean} now */
+  /** Now, or soon; and what comes meanwhile, soon afterwards. @param {boolean} now */
   redraw(now) {
-    if (this.due && !now) return;
-    clearTimeout(this.due);
     if (now) this.draw();
-    this.due = setTimeout(() => {
+    this.due ??= setTimeout(() => {
       this.due = undefined;
-      if (!now) this.draw();
+      this.draw();
     }, REDRAW_MS);
   }
 
