@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from app.evaluation.agreement import alignment, rmse
+from app.evaluation.agreement import alignment, rmse, steady_alignment
 from disk import kind
 from ratslam_core import CellsOnly, ExperienceMap, Odometry, Pose2
 from sim2d import Truth
@@ -77,7 +77,7 @@ class Evaluation:
         if math.isfinite(x):
             return x, y
         truth, mapped, _ = self.trajectories(experiences)
-        place = alignment(mapped, truth).compose(experiences.pose(experience))
+        place = steady_alignment(mapped, truth).compose(experiences.pose(experience))
         return place.x, place.y
 
     def heading_at(self, experience: int) -> float | None:

@@ -50,7 +50,7 @@ test("the menu names what would really begin", async () => {
     await cells(8);
     await menu(page);
     const titles = () => page.all("#brains-anew button > span:first-child").map((words) => words.textContent);
-    const wanted = ["Ours", "Without vision", "64 x 64 pose cells", "Learning rate 0.15", "No map, as in 2004"];
+    const wanted = ["Ours", "Without vision", "64 x 64 pose cells", "Learning rate 0.0015", "No map, as in 2004"];
     await until(`the menu offers ${wanted}`, () => String(titles()) === String(wanted));
     await page.click("#brains-anew button", "64 x 64 pose cells");
     await page.told("Two brains, the same senses");

@@ -12,6 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from app.evaluation import Coverage, Evaluation, align, alignment, rmse
+from app.evaluation.agreement import steady_alignment
 from app.evaluation.evaluation import CONSISTENT_WITHIN_S, EVERY, MOST_TICKS
 from ratslam_core import Odometry, Pose2
 from sim2d import FreeSpace, Truth, load_world
@@ -41,6 +42,16 @@ def test_evo_aligns_the_same_way(seed: int, n: int, noise: float) -> None:
     assert math.atan2(rotation[1, 0], rotation[0, 0]) == pytest.approx(frame.heading_rad, abs=1e-7)
     assert translation == pytest.approx([frame.x, frame.y], abs=1e-6)
     assert align(estimate, truth) == pytest.approx((rotation @ estimate.T).T + translation, abs=1e-6)
+
+
+@given(st.integers(0, 2**32 - 1))
+def test_some_seconds_at_a_false_place_do_not_turn_the_frame(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    truth, frame = walk(rng, 200), Pose2(1.0, 5.0, -0.7)
+    estimate, begin = moved(truth, frame.inverse()), rng.integers(190)
+    estimate[begin : begin + 10] += moved(np.array([10.0, 0.0]), Pose2(0.0, 0.0, rng.uniform(0, 6)))
+    found = steady_alignment(estimate, truth)
+    assert (found.x, found.y, found.heading_rad) == pytest.approx((frame.x, frame.y, frame.heading_rad), abs=1e-6)
 
 
 @pytest.mark.parametrize("seed", range(5))
