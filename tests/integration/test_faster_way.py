@@ -23,6 +23,7 @@ ROUND: list[Place] = [
 ]  # fmt: skip
 BACK: list[Place] = [*ROUND[-2::-1], ROUND[-1]]
 MIDDLE_Y = 6.0
+TAGGED_M = 1.5  # which way it takes is asked, not where it stops; see docs/findings.md, What went in November
 
 
 def slow_above() -> World:
@@ -38,10 +39,10 @@ def ways(seed: int, world: World) -> tuple[Course, dict[str, float]]:
     course = Course(
         session,
         [
-            Tag(do="tag", places=["goal 1", "goal 2"], within_m=1.5),
+            Tag(do="tag", places=["goal 1", "goal 2"], within_m=TAGGED_M),
             Drive(do="drive", path=ROUND, laps=2, speed=0.36),
             Drive(do="drive", path=BACK, laps=2, speed=0.36),
-            Visit(do="visit", places=["goal 1", "goal 2"], timeout_s=300),
+            Visit(do="visit", places=["goal 1", "goal 2"], timeout_s=300, near_m=TAGGED_M),
         ],
     )
     heights: dict[str, list[float]] = {"goal 1": [], "goal 2": []}
