@@ -104,7 +104,7 @@ def test_the_stage_as_a_picture_and_as_a_film(driven: Program, browser: Browser,
         expect(page.locator("#film")).to_be_visible()
         page.click("#film-cancel")
         expect(page.locator("#film")).to_be_hidden()
-        told(page, "The film was given up.")
+        told(page, "The film was cancelled.")
         file = saved(page, tmp_path, keep(page, "Film from a to b"))
         assert file.name == "office-seed5-0m05.0s-to-0m08.0s.webm"
         assert not driven.state()["running"]

@@ -32,7 +32,7 @@ test("every tab shows something, is told of while it is open only, and arrows go
     for (const [name, words] of [
       ["Senses", "local view cells"],
       ["Memory", "links of the goal memory"],
-      ["Inspect", "Nothing is chosen"],
+      ["Inspect", "Shift-click the map"],
       ["Tick", "of its 100 ms"],
       ["Truth", "map error, after alignment"],
       ["Office", "preset"],
@@ -156,7 +156,7 @@ test("a tick goes stage by stage from the panel, and over the page", () =>
     await page.push("back", panel);
     await page.says(`${panel} [aria-current]`, "Image and odometry");
     await page.push("tick", panel);
-    await page.says(panel, "Press next stage");
+    await page.says(panel, "Next stage pauses");
 
     const { tick } = await state();
     page.press(",");

@@ -63,7 +63,7 @@ _GOALS: dict[GoalMeaning, tuple[str, str, str]] = {
     "unreachable": ("warn", "no way to the goal", "no way"),
     "trusting": ("flag", "going where it believes the goal to be", "goal?"),
     "believed": ("lost", "believes to be at the goal", "arrived?"),
-    "finding itself": ("lost", "finds out where it is before it goes on to the goal", "waits"),
+    "finding itself": ("lost", "relocalises before it goes on to the goal", "waits"),
     "waiting": ("flag", "the goal waits", "waits"),
 }
 _LOST: dict[GoalState, GoalMeaning] = {

@@ -31,13 +31,13 @@ def _counts(snapshot: Snapshot) -> dict[str, Any]:
     counts = {
         "local view cells": snapshot.views,
         "experiences": snapshot.experiences,
-        "links between them": snapshot.links,
+        "links of the map": snapshot.links,
         "relocalisations": snapshot.relocalisations,
     }
     if snapshot.belief is not None:
         counts |= {
-            "sights on familiar ground, not stored": snapshot.belief.spared,
-            "links not needed": snapshot.belief.links_spared,
+            "views spared on familiar ground": snapshot.belief.spared,
+            "links spared": snapshot.belief.links_spared,
             "links to pose cells forgotten": snapshot.belief.forgotten,
         }
     if snapshot.goal_memory is not None:
@@ -47,19 +47,19 @@ def _counts(snapshot: Snapshot) -> dict[str, Any]:
 
 def _belief(snapshot: Snapshot) -> dict[str, Any]:
     """The uncertainty of the pose estimate, and the hypotheses beside it."""
-    belief, title = snapshot.belief, "How sure it is of its place"
+    belief, title = snapshot.belief, "Pose estimate"
     if belief is None:
         return table(title, [], "it has no experience map")
     known = math.isfinite(belief.off_m)
     rows = [
-        ("may be off by", number(belief.off_m, "m", 2) if known else "it does not know"),
-        ("may be elsewhere", _elsewhere(belief, snapshot)),
-        ("found out that it was elsewhere", often(belief.corrected) if belief.corrected else "never"),
+        ("uncertainty", number(belief.off_m, "m", 2) if known else "unknown"),
+        ("rival hypothesis", _elsewhere(belief, snapshot)),
+        ("beliefs revised", often(belief.corrected) if belief.corrected else "never"),
     ]
     if belief.odds is not None:
-        rows.append(("odds of this place", odds_words(belief.odds)))
+        rows.append(("odds", odds_words(belief.odds)))
     if belief.places:
-        rows.append(("places that are possible", thousands(belief.places)))
+        rows.append(("hypotheses", thousands(belief.places)))
     if belief.apart or belief.joined:
         rows.append(("submaps merged", thousands(belief.joined)))
         rows.append(("experiences on other submaps", thousands(belief.apart)))
@@ -68,10 +68,10 @@ def _belief(snapshot: Snapshot) -> dict[str, Any]:
 
 def _elsewhere(belief: Belief, snapshot: Snapshot) -> str:
     if not belief.others:
-        return "nowhere"
+        return "none"
     likeliest = belief.others[0]
     away = math.hypot(likeliest.x - snapshot.estimate.x, likeliest.y - snapshot.estimate.y)
-    return f"{away:.1f} m away, likely by {share_words(likeliest.share)}"
+    return f"{away:.1f} m away, {share_words(likeliest.share)}"
 
 
 def _packets(layer: PoseCellLayer) -> dict[str, Any]:
@@ -88,23 +88,23 @@ def _attractor(layer: PoseCellLayer) -> dict[str, Any]:
     verdict = "broken" if not positive else "holds" if whole else "not normalised yet"
     rows = [
         ("sum of all activity", f"{layer.total:.6f}"),
-        ("least of an active cell", f"{layer.least:.1e}"),
+        ("lowest activity", f"{layer.least:.1e}"),
         ("active cells", f"{thousands(layer.active_cells)} of {thousands(math.prod(layer.shape))}"),
-        ("sum 1, nothing below 0", verdict),
+        ("sum 1, none negative", verdict),
     ]
     return table("Attractor", rows)
 
 
 def _goal(goal: Goal | None) -> dict[str, Any]:
     if goal is None:
-        return table("Goal", [], "none: click on the map and the robot goes there")
+        return table("Goal", [], "none: click the map")
     others = len(goal.places_xy) - 1
     rows = [
         ("state", goal_status(goal).words),
         ("experience", f"#{goal.experience}" + (f" or {others} others" if others > 0 else "")),
     ]
-    rows += [("time to get there", number(goal.eta_s, "s", 0)), ("way to go", number(goal.remaining_m, "m"))]
-    return table("Goal", [*rows, ("place in the map", f"{goal.x:.2f}, {goal.y:.2f} m")])
+    rows += [("time to goal", number(goal.eta_s, "s", 0)), ("distance to goal", number(goal.remaining_m, "m"))]
+    return table("Goal", [*rows, ("position", f"{goal.x:.2f}, {goal.y:.2f} m")])
 
 
 def _log(snapshot: Snapshot) -> dict[str, Any]:
@@ -127,12 +127,12 @@ def _causes(snap: Snap | None) -> list[dict[str, Any]]:
         )
         for cause in snap.causes
     ]
-    return [table(f"Views that made the snap of {clock(snap.time_s)}", rows, "none: no view put activity there")]
+    return [table(f"Views that made the snap of {clock(snap.time_s)}", rows, "none: no view injected there")]
 
 
 def _no_snaps(snapshot: Snapshot) -> str:
     if snapshot.relocalisations:
-        return f"none of late: {snapshot.relocalisations} so far"
+        return f"none recently; {snapshot.relocalisations} so far"
     if snapshot.revisit_consistency is None:
-        return "none yet: nothing seen before has come into view again"
-    return "none yet: what it saw again agreed with where it believed it was, so nothing had to jump"
+        return "none yet: no view has been recognised"
+    return "none yet: recognised views agreed with odometry"

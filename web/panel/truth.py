@@ -13,7 +13,7 @@ from web.panel.part import Content, counted, number, table
 from web.panel.tune import knob
 
 COLUMNS = ("time_s", "map_error_m", "odometry_error_m", "views", "experiences", "residual_mm", "residual_mrad")
-NOTHING = "Nothing lives in this world: no people, doors, lamps, boxes, daylight or script. The pencil above lets you draw some."
+NOTHING = "No people, doors, lamps, boxes or script here. The pencil above draws some."
 MOST = 40  # switches of one kind; beyond that, click on the door itself
 
 
@@ -24,8 +24,8 @@ def numbers(snapshot: Snapshot) -> Content:
         ("odometry alone", number(snapshot.error_odometry_m, "m", 2)),
     ]
     if snapshot.coverage is not None:
-        rows.append(("floor covered, to within a metre", f"{100 * snapshot.coverage:.0f} %"))
-    rows.append(("revisits within half a metre", "no revisits yet" if again is None else f"{100 * again:.0f} %"))
+        rows.append(("floor explored, to 1 m", f"{100 * snapshot.coverage:.0f} %"))
+    rows.append(("revisits within 0.5 m", "none yet" if again is None else f"{100 * again:.0f} %"))
     return Content({"table": table("Error against the true world", rows)})
 
 
@@ -55,7 +55,7 @@ def office(
 def words(layer: LivingLayer | None, shown: tuple[str, ...]) -> str:
     """What is there now, in a sentence."""
     if layer is None:
-        return "Nothing moves in this world." if shown else NOTHING
+        return "Nothing moves here." if shown else NOTHING
     parts: list[str] = []
     if "people" in shown:
         parts.append(counted(len(layer.people), "person", "people"))

@@ -244,13 +244,13 @@ def test_the_tab_says_what_is_there() -> None:
     everything = "2 people, 1 box, 1 of 2 doors not open, 1 of 1 lamps lit, daylight 1.00."
     for layer, switches, words in (
         (living(), ("people", "seed", "boxes", "daylight"), f"Here now: {everything}"),
-        (None, ("reflections",), "Nothing moves in this world."),
+        (None, ("reflections",), "Nothing moves here."),
         (bare, ("lamps",), "Here now: 1 of 1 lamps lit."),
         (bare, ("lamps", "people"), "Here now: 0 people, 1 of 1 lamps lit."),
         (dark, ("script",), "A script is carried out here."),
     ):
         assert told(layer, *switches)["words"] == words
-    assert told(None)["words"].startswith("Nothing lives in this world")
+    assert told(None)["words"].startswith("No people, doors, lamps")
 
 
 def test_the_tab_lists_the_names_of_places_and_not_where_they_are() -> None:

@@ -110,10 +110,10 @@ def test_the_memory_says_why_there_is_nothing() -> None:
     bare = replace(SNAPSHOT, events=(), goal=None, relocalisations=0, revisit_consistency=None, pose_cells=cells)
     words = memory(bare)
     assert "no activity yet" in words
-    assert "none: click on the map and the robot goes there" in words
-    assert "none yet: nothing seen before has come into view again" in words
-    assert "nothing had to jump" in memory(replace(bare, revisit_consistency=0.5))
-    assert "none of late: 7 so far" in memory(replace(bare, relocalisations=7))
+    assert "none: click the map" in words
+    assert "none yet: no view has been recognised" in words
+    assert "agreed with odometry" in memory(replace(bare, revisit_consistency=0.5))
+    assert "none recently; 7 so far" in memory(replace(bare, relocalisations=7))
 
 
 def test_the_memory_tells_packets_goal_and_snaps_with_their_units() -> None:
@@ -127,7 +127,7 @@ def test_the_memory_tells_packets_goal_and_snaps_with_their_units() -> None:
             Snap(65.0, packet, packet, causes),
             "7 looks, 41 % of the injected activity; 90 links there, up to 0.02; learnt 61 s",
         ),
-        (Snap(65.0, packet, packet, ()), "none: no view put activity there"),
+        (Snap(65.0, packet, packet, ()), "none: no view injected there"),
     ):
         words = memory(replace(SNAPSHOT, goal=goal, events=happened, pose_cells=replace(CELLS, last_snap=snap)))
         assert f"x′ {packet.x * CELLS.cell_m:.1f} m" in words
@@ -150,13 +150,13 @@ def test_the_memory_tells_how_sure_the_robot_is_and_where_else_it_may_be() -> No
     elsewhere = (Hypothesis(here.x + 3.0, here.y + 4.0, 0.0, 0.12),)
     doubting = replace(sure, off_m=np.inf, others=elsewhere, corrected=1, apart=7, joined=2)
     for belief, words in (
-        (sure, "'may be off by', '0.08 m'"),
-        (sure, "'may be elsewhere', 'nowhere'"),
-        (sure, "'found out that it was elsewhere', 'never'"),
+        (sure, "'uncertainty', '0.08 m'"),
+        (sure, "'rival hypothesis', 'none'"),
+        (sure, "'beliefs revised', 'never'"),
         (sure, "12\\xa0345"),
-        (replace(sure, places=5), "'places that are possible', '5'"),
-        (doubting, "it does not know"),
-        (doubting, "5.0 m away, likely by 12 %"),
+        (replace(sure, places=5), "'hypotheses', '5'"),
+        (doubting, "unknown"),
+        (doubting, "5.0 m away, 12 %"),
         (doubting, "'once'"),
         (doubting, "'submaps merged', '2'"),
         (doubting, "'experiences on other submaps', '7'"),
@@ -250,7 +250,7 @@ def test_the_truth_is_told_in_numbers_and_series() -> None:
     assert data["residual"].startswith(f"{snapshot.series.residual_mm[-1]:.1f} mm and ")
     np.testing.assert_allclose(arrays["odometry_error_m"], snapshot.series.odometry_error_m, rtol=1e-6)
     nothing = replace(snapshot, revisit_consistency=None, series=fake_snapshot(0).series)
-    assert "no revisits yet" in str(told(nothing, "numbers"))
+    assert "none yet" in str(told(nothing, "numbers"))
 
 
 # ---------------------------------------------------------------- Office and Tune

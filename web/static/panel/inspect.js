@@ -6,9 +6,8 @@ import { nameOf } from "../timeline/events.js";
 import { choice, heading, note, SwitchList, caption, Histogram, Picture, Table } from "./parts.js";
 
 const NOTHING =
-  "Nothing is chosen. Hold shift and click on the map, or touch it with Click inspects on: the experience there is shown, with " +
-  "all that the robot knows of it. " +
-  "Click into the pose cells: what is active there, and which views lead there.";
+  "Shift-click the map (or touch it with Click inspects on): the experience there. " +
+  "Click the pose cells: what is active there, and which views lead there.";
 
 export class InspectTab {
   /** @param {import("./panel.js").Ask} ask @param {(text: string) => void} complain */
@@ -111,7 +110,7 @@ class InjectForm {
       "form",
       { hidden: true, className: "inject" },
       this.title,
-      note("No sense says it: watch how it competes with the others."),
+      note("No view speaks for it: watch it compete."),
       heading.box,
       share.box,
       button,
@@ -218,7 +217,7 @@ export class Report {
     if (data.kind === "why") return [caption("camera then"), this.camera.canvas, this.noCamera];
     if (data.kind === "cell") return [caption("by heading θ′"), this.turns.box];
     if (!seen)
-      return [caption("view"), make("p", { className: "blank", textContent: "made where there was nothing to see" })];
+      return [caption("view"), make("p", { className: "blank", textContent: "nothing was seen here" })];
     const button = make("button", { type: "button", className: "picture" }, this.picture.canvas);
     button.setAttribute("aria-label", `Inspect its view ${data.view}`);
     button.dataset.key = "its view";
@@ -299,7 +298,7 @@ class Why {
   /** @param {WhyReport} report @param {import("./senses.js").Arrays} arrays */
   show(report, arrays) {
     renew(this.said, report.said, () =>
-      report.said.length ? [heading("What spoke for this place, and against it"), bars(report.said)] : [],
+      report.said.length ? [heading("Evidence for and against this place"), bars(report.said)] : [],
     );
     renew(this.packets, report.packets, () =>
       report.packets.map((packets, k) => {
@@ -329,7 +328,7 @@ class Why {
       const button = choice("view", view, `#${view}`, this.inspect);
       return make("figure", {}, this.pictures[k].canvas, make("figcaption", {}, button, ` ${words}`));
     });
-    return [heading("Views that played a part"), ...cards];
+    return [heading("Views involved"), ...cards];
   }
 }
 

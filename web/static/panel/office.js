@@ -129,7 +129,7 @@ class TagList {
       if (answer.accepted) name.value = "";
     });
     this.list = make("ul", { className: "tags" });
-    this.empty = note("None has a name yet. Name the place where the robot is, and a click on the name sends it back.");
+    this.empty = note("No place is named yet. Name where the robot is; a click on the name sends it back.");
     this.box = make("section", {}, heading("Places"), form, this.list, this.empty);
   }
 

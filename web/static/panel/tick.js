@@ -21,9 +21,9 @@ export const partWords = ([, mean_ms, worst_ms]) => `${mean_ms.toFixed(2)}, wors
 /** A part's time as a share of the most expensive part's. @param {Timing[]} parts @param {Timing} timing */
 export const shareOf = (parts, [, mean_ms]) => mean_ms / Math.max(1e-9, ...parts.map(([, other_ms]) => other_ms));
 
-const NOTHING = "Press next stage: the session pauses, and you go through one tick and see what each stage did.";
+const NOTHING = "Next stage pauses, and shows one tick stage by stage.";
 const TRUE =
-  "The tick is computed as always, whole and in this order; pose cells and map show how they were at each stage.";
+  "The tick is computed whole; pose cells and map are shown as they were at each stage.";
 /** @type {Record<string, Command>} */
 const ORDERS = {
   back: { type: "step_stage", back: true },
@@ -48,7 +48,7 @@ export class TickTab {
     this.words = note("");
     this.cost = heading("");
     this.timings = make("div", { className: "timings" });
-    const how = note("Mean and worst of the last hundred ticks, measured beside the engine.");
+    const how = note("Mean and worst of the last hundred ticks.");
     this.box = make("div", {}, go, this.title, this.list, this.words, this.cost, how, this.timings);
     /** @type {{ name: HTMLElement, words: HTMLElement, bar: Bar }[]} */
     this.rows = [];

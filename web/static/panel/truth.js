@@ -114,7 +114,7 @@ export class TruthTab {
       150,
     );
     this.words = heading("Map correction");
-    const why = note("A closed loop makes links and map disagree; correction spreads the difference over the map.");
+    const why = note("After a loop closure links and map disagree: correction spreads the error.");
     this.box = make(
       "div",
       {},
@@ -122,7 +122,7 @@ export class TruthTab {
       this.switches.box,
       this.table.box,
       this.errors.box,
-      heading("What it has stored"),
+      heading("Stored"),
       this.counts.box,
       this.words,
       why,

@@ -149,7 +149,7 @@ function control({ value, choices, low, high, step }) {
   return make("input", { type: "number", min: limit(low), max: limit(high), step: String(step ?? "any") });
 }
 
-const POINT = "Point at a name, or touch or tab to its field, for its meaning. ↻ takes effect at reset.";
+const POINT = "Point at a name, or tab to its field, for its meaning. ↻ takes effect at reset.";
 
 export class TuneTab {
   /** @param {import("./panel.js").Ask} ask */

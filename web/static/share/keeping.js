@@ -116,7 +116,7 @@ class StageFilm {
     await this.link.ask({ type: "pause" });
     film.recorder.stop();
     for (const track of film.recorder.stream.getTracks()) track.stop();
-    if (!whole) toast("The film was given up.");
+    if (!whole) toast("The film was cancelled.");
   }
 
   /** @param {NonNullable<StageFilm["film"]>} film */
