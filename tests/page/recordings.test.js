@@ -35,7 +35,6 @@ const played = (use) =>
       page.choosesFiles("#open-files", ["walk.avi", film]);
       await page.told("walk.avi plays.");
       await command("set_speed", { factor: 0 });
-      await command("resume");
       await page.says("#status", "the recording has ended");
       await use(page);
     },

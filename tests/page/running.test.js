@@ -165,7 +165,7 @@ test("a place is named in the panel, and its name is a goal", () =>
   fresh(async (page) => {
     await command("step", { ticks: 300 });
     const panel = await page.tab("Office");
-    await page.says(panel, "None has a name yet");
+    await page.says(panel, "No place is named yet");
     const name = `${panel} [aria-label='name of this place']`;
     for (const words of ["the kitchen", "the desk"]) {
       await page.fill(name, words);

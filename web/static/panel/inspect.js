@@ -216,8 +216,7 @@ export class Report {
     if (data.kind === "view") return [caption("camera now"), this.camera.canvas, this.noCamera];
     if (data.kind === "why") return [caption("camera then"), this.camera.canvas, this.noCamera];
     if (data.kind === "cell") return [caption("by heading θ′"), this.turns.box];
-    if (!seen)
-      return [caption("view"), make("p", { className: "blank", textContent: "nothing was seen here" })];
+    if (!seen) return [caption("view"), make("p", { className: "blank", textContent: "nothing was seen here" })];
     const button = make("button", { type: "button", className: "picture" }, this.picture.canvas);
     button.setAttribute("aria-label", `Inspect its view ${data.view}`);
     button.dataset.key = "its view";

@@ -22,8 +22,7 @@ export const partWords = ([, mean_ms, worst_ms]) => `${mean_ms.toFixed(2)}, wors
 export const shareOf = (parts, [, mean_ms]) => mean_ms / Math.max(1e-9, ...parts.map(([, other_ms]) => other_ms));
 
 const NOTHING = "Next stage pauses, and shows one tick stage by stage.";
-const TRUE =
-  "The tick is computed whole; pose cells and map are shown as they were at each stage.";
+const TRUE = "The tick is computed whole; pose cells and map are shown as they were at each stage.";
 /** @type {Record<string, Command>} */
 const ORDERS = {
   back: { type: "step_stage", back: true },
