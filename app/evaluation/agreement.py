@@ -24,21 +24,19 @@ def alignment(estimate: NDArray[np.float64], truth: NDArray[np.float64]) -> Pose
     return Pose2(float(mean_t[0]) - turned.x, float(mean_t[1]) - turned.y, angle)
 
 
-def steady_alignment(estimate: NDArray[np.float64], truth: NDArray[np.float64]) -> Pose2:
-    """`alignment` without the tenth that fits worst, so that what is far off for a while does not turn the frame: one
-    step of least trimmed squares, Rousseeuw 1984."""
-    frame = alignment(estimate, truth)
-    c, s = math.cos(frame.heading_rad), math.sin(frame.heading_rad)
-    off = np.hypot(*(estimate @ np.array([[c, s], [-s, c]]) + (frame.x, frame.y) - truth).T)
-    best = off <= np.quantile(off, 0.9)
-    return alignment(estimate[best], truth[best])
-
-
 def align(estimate: NDArray[np.float64], truth: NDArray[np.float64]) -> NDArray[np.float64]:
     """`estimate` (n, 2), rotated and translated (not scaled) to fit `truth` best."""
     frame = alignment(estimate, truth)
     c, s = math.cos(frame.heading_rad), math.sin(frame.heading_rad)
     return estimate @ np.array([[c, s], [-s, c]]) + (frame.x, frame.y)
+
+
+def steady_alignment(estimate: NDArray[np.float64], truth: NDArray[np.float64]) -> Pose2:
+    """`alignment` without the tenth that fits worst, so that what is far off for a while does not turn the frame: one
+    step of least trimmed squares, Rousseeuw 1984."""
+    off = np.hypot(*(align(estimate, truth) - truth).T)
+    best = off <= np.quantile(off, 0.9)
+    return alignment(estimate[best], truth[best])
 
 
 def rmse(estimate: NDArray[np.float64], truth: NDArray[np.float64]) -> float:
