@@ -28,10 +28,10 @@ class SimParams:
     max_acceleration: float = param(1.0, "the motors' limit on change of speed", 0.05, 10.0, "m/s^2", symbol="a_max")
     max_yaw_acceleration: float = param(
         6.0, "the motors' limit on change of yaw rate", 0.1, 60.0, "rad/s^2", symbol="α_max")
-    mass_kg: float = param(8.0, "mass of the robot, the same all over its disc", 1.0, 100.0, "kg", symbol="m")
-    grip_n: float = param(80.0, "the wheels slip rather than pass on more force", 1.0, 1000.0, "N", symbol="F_g")
+    mass_kg: float = param(8.0, "mass of the robot, a uniform disc", 1.0, 100.0, "kg", symbol="m")
+    grip_n: float = param(80.0, "force above which the wheels slip", 1.0, 1000.0, "N", symbol="F_g")
     turn_grip_nm: float = param(
-        20.0, "the wheels slip rather than pass on more torque in a turn", 0.1, 200.0, "N m", symbol="τ_g")
+        20.0, "torque above which the wheels slip in a turn", 0.1, 200.0, "N m", symbol="τ_g")
     friction: float = param(
         0.3, "friction of the robot's rim and of all that it touches; their product is Coulomb's", 0.0, 1.0, symbol="μ")
     camera: bool = param(True, "the camera sees; off = its image is black, for brains that see only numbers")
@@ -105,11 +105,11 @@ class OfficeParams:
         True, "glass reflects what is in front of it; off = it only shows its own colour", source="ACRA 2004")
     door_s: float = param(1.5, "time that a door takes to open or shut", 0.1, 60.0, "s")
     patience_least_s: float = param(
-        3.0, "how long a person stands at an obstacle before turning back, at least ...", 0.0, 600.0, "s")
-    patience_most_s: float = param(8.0, "... and at most; each time is random", 0.0, 600.0, "s")
+        3.0, "least time that a person waits at an obstacle before turning back", 0.0, 600.0, "s")
+    patience_most_s: float = param(8.0, "longest such time; each is random", 0.0, 600.0, "s")
     slow_zones: bool = param(True, "slow floors slow the robot down", source="IROS 2005")
     boxes: bool = param(True, "boxes stand on the floor; off = all are taken away")
-    script: bool = param(True, "the world's script is carried out")
+    script: bool = param(True, "timed changes of the world file happen; off = none")
     seed: int = param(0, "seed for the people; 0 = derived from the seed of the run", 0, 2**32 - 1, live=False)
 
     def __post_init__(self) -> None:

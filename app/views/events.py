@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from app.session import Session, is_lost
 from app.views.arrays import frozen
-from app.views.reasons import Reasons, words_of
+from app.views.reasons import Reasons, why_no_route, words_of
 from disk import kind
 from ratslam_core import find_places
 from web.messages import Closure, Event, EventKind, GoalState, Packet, Snap, WhyReport
@@ -184,7 +184,7 @@ class EventWatch:
             return
         new, self._new = self._new, 0
         if new >= NEW_GROUND and (before, now) in map_.transitions.row_of and not session.brain.lost:
-            event = self._log.note("closure", f"after {new} new experiences at #{now} again")
+            event = self._log.note("closure", f"back at experience {now} after {new} new ones")
             self.reasons.closure(event, before, now, new)
             self.closures.closed(event, before, now)
 
@@ -193,7 +193,7 @@ class EventWatch:
         lost = carried or is_lost(session)
         if lost and not self._at_a_loss:
             packets = len(session.brain.pose_cells.packets)
-            why = "the image jumped: carried away?" if carried else f"{packets} packets compete"
+            why = "the image jumped: kidnapped?" if carried else f"{packets} packets compete"
             self.reasons.lost(self._log.note("lost", why))
         self._at_a_loss, self.lost = lost, is_lost(session)
         self._watch_belief(carried)
@@ -207,21 +207,21 @@ class EventWatch:
             self._lost_s, self._believed, self._joined = session.time_s, False, joined
         if self._lost_s is None:
             return
-        after = f"{session.time_s - self._lost_s:.1f} s after it noticed that it was carried"
+        after = f"{session.time_s - self._lost_s:.1f} s after the kidnap was noticed"
         if carried and belief is not None and not self._believed:
             self._believed = True
-            event = self._log.note("believes", f"a place again {after}, {odds_words(math.exp(belief.log_odds))}")
+            event = self._log.note("believes", f"a place {after}, {odds_words(math.exp(belief.log_odds))}")
             self.reasons.believes(event, belief)
         if not carried:
             self._lost_s = None
             if joined > self._joined:
-                self._log.note("joined", f"its map is one again {after}")
+                self._log.note("joined", f"submaps merged {after}")
 
     def _watch_error(self) -> None:
         """Marks that a robot that did not know of being lost proved to be elsewhere: its map, or a merge, was wrong."""
         map_ = self._session.brain.experience_map
         if map_.corrected > self._corrected:
-            self._log.note("corrected", "the robot was not where it took itself to be: the map follows the evidence")
+            self._log.note("corrected", "the pose estimate was wrong: the map follows the evidence")
         self._corrected = map_.corrected
 
     def _watch_goal(self) -> None:
@@ -239,14 +239,16 @@ class EventWatch:
         if meaning == "arrived":
             self._log.note("arrived", f"at experience {goal}")
         elif meaning == "unreachable":
-            self._log.note("unreachable", f"no way to experience {goal} is known; exploring for one")
+            self._log.note(
+                "unreachable", f"no route to experience {goal}, {why_no_route(self._session)}: exploring for one"
+            )
 
     def _watch_kidnaps(self) -> None:
         kidnaps = self._session.evaluation.kidnaps
         while self._recovered < len(kidnaps) and kidnaps[self._recovered].after_s is not None:
             kidnap = kidnaps[self._recovered]
             self._log.note(
-                "recovered", f"knows where it is {kidnap.after_s:.1f} s and {kidnap.after_m:.1f} m after the kidnap"
+                "recovered", f"right again {kidnap.after_s:.1f} s and {kidnap.after_m:.1f} m after the kidnap"
             )
             self._recovered += 1
         if self._recovered < len(kidnaps) - 1:
@@ -258,7 +260,7 @@ class EventWatch:
         if not seen.false_positive or self._session.time_s < self._false_due_s:
             return
         more = count - self._false_marked - 1
-        words = f"view {seen.view} instead of {seen.best_view}"
+        words = f"view {seen.view} reported instead of {seen.best_view}"
         words += f", and {more} more since the last mark" if more else ""
         self.reasons.false_look(self._log.note("false", words))
         self._false_marked, self._false_due_s = count, self._session.time_s + FALSE_EVERY_S
@@ -269,9 +271,7 @@ class EventWatch:
         if dropped:
             i, j = dropped[0]
             more = f" and {len(dropped) - 1} more" if len(dropped) > 1 else ""
-            self._log.note(
-                "link", f"deleted: from experience {i} to {j}{more}, tried too often in vain", "deleted links"
-            )
+            self._log.note("link", f"deleted: {i} to {j}{more}, failed too often", "deleted links")
             self._dropped += len(dropped)
 
     def _watch_places(self) -> None:
@@ -283,11 +283,15 @@ class EventWatch:
         multiple, collisions = len(found.multiple_representations), len(found.hash_collisions)
         if multiple > self._multiple:
             self._log.note(
-                "place", f"places with several representations in the pose cells: {multiple}", "places held twice"
+                "place",
+                f"multiple representations in the pose cells: {multiple} {'place' if multiple == 1 else 'places'}",
+                "places held twice",
             )
         if collisions > self._collisions:
             self._log.note(
-                "place", f"states of the pose cells that stand for several places: {collisions}", "states in common"
+                "place",
+                f"hash collisions in the pose cells: {collisions} {'state' if collisions == 1 else 'states'}",
+                "states in common",
             )
         self._multiple, self._collisions = max(multiple, self._multiple), max(collisions, self._collisions)
 
@@ -298,7 +302,7 @@ class EventWatch:
             rate = session.config.experience_map.correction
             self._log.note(
                 "warning",
-                f"the map has diverged: a correction rate of {rate:g} is too high for all links at once",
+                f"the map diverged: correction rate {rate:g} is too high for all links at once",
                 "diverged",
             )
             self._diverged_due_s = session.time_s + DIVERGED_EVERY_S

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import math
 from collections import deque
+from itertools import chain
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,7 +39,7 @@ class Reasons:
         """ValueError: nothing is known of this event."""
         if event not in self._kept:
             known = f"; the newest is {max(self._kept)}" if self._kept else ": there has been none yet"
-            kinds = "a snap, closure, false look, lost moment or belief of late"
+            kinds = "a recent snap, closure, false positive, loss or belief"
             raise ValueError(f"event must be {kinds}, got {event}{known}")
         return self._kept[event]
 
@@ -56,19 +57,19 @@ class Reasons:
         """The winner changed from `start` to `end`, the views in `causes` having put activity there."""
         shares = {packet.id: packet.mass for packet in self._before}
         chain = [
-            (self.causes.since_s, f"view {c.view}, learnt {c.age_s:.0f} s earlier, is seen: {_looks(c.looks)} put "
-             f"{c.share:.0%} of the activity there, over {c.links} links to pose cells")
+            (self.causes.since_s, f"view {c.view}, learnt {c.age_s:.0f} s earlier, is recognised: {_times(c.looks)} injected "
+             f"{c.share:.0%} of the activity there, over {c.links} links")
             for c in causes[:MOST_VIEWS]
         ]  # fmt: skip
         if end.id in shares:
-            had = f"packet {end.id} had {shares[end.id]:.0%} of all activity"
+            had = f"packet {end.id} had {shares[end.id]:.0%} of the activity"
             words = f"{had}, packet {start.id} {shares.get(start.id, 0):.0%}"
         else:
             words = f"packet {end.id} is new"
         apart = self._session.brain.pose_cells.cells_apart(start.x, start.y, end.x, end.y)
         chain += [
             (event.time_s, words),
-            (event.time_s, f"the winner is {apart:.0f} cells away now: the pose cells have relocalised"),
+            (event.time_s, f"the winner jumps {apart:.0f} cells: relocalised"),
             (event.time_s, f"experience {self._session.estimate.experience} is active"),
         ]
         views = [(c.view, f"{c.share:.0%} of what was injected") for c in causes[:MOST_VIEWS]]
@@ -77,13 +78,13 @@ class Reasons:
     def closure(self, event: m.Event, start: int, end: int, new: int) -> None:
         """After `new` new experiences, one that existed before them is active again and linked."""
         seen, map_ = self._session.estimate.recognition, self._session.brain.experience_map
-        known = "its view is seen again" if seen.view < 0 else f"view {seen.view} is recognised ({self._differs()})"
+        known = "its view is recognised" if seen.view < 0 else f"view {seen.view} is recognised ({self._differs()})"
         chain = [
-            (event.time_s, f"{new} new experiences were made on new ground"),
-            (event.time_s, f"{known}, which belongs to experience #{end}"),
-            (event.time_s, f"#{start} is linked to #{end}: the loop is closed"),
-            (event.time_s, f"the robot's place in the map moves by {_apart(self._robot_before, self._robot):.2f} m"),
-            (event.time_s, f"{map_.link_count} links now pull the map straight"),
+            (event.time_s, f"{new} new experiences on new ground"),
+            (event.time_s, f"{known}, of experience {end}"),
+            (event.time_s, f"experiences {start} and {end} are linked: the loop is closed"),
+            (event.time_s, f"the pose estimate moves by {_apart(self._robot_before, self._robot):.2f} m"),
+            (event.time_s, f"{map_.link_count} links relax the map"),
         ]
         views = [(seen.view, "recognised")] if seen.view >= 0 else []
         self._keep(event, chain, views, event.time_s, tuple(view for view, _ in views), (start, end))
@@ -93,12 +94,9 @@ class Reasons:
         seen = self._session.estimate.recognition
         rate = self._session.config.local_view.false_positives
         chain = [
-            (event.time_s, f"view {seen.best_view} is what the image shows ({self._differs()})"),
-            (
-                event.time_s,
-                f"view {seen.view} is reported instead: {rate:.0%} of all looks are made false, as a setting",
-            ),
-            (event.time_s, f"it puts activity where view {seen.view} was learnt"),
+            (event.time_s, f"the image shows view {seen.best_view} ({self._differs()})"),
+            (event.time_s, f"view {seen.view} is reported instead: `false_positives` is {rate:.0%}"),
+            (event.time_s, f"it injects activity where view {seen.view} was learnt"),
         ]
         views = [(seen.view, "reported"), (seen.best_view, "right")]
         self._keep(event, chain, views, event.time_s, (seen.view,))
@@ -109,11 +107,11 @@ class Reasons:
         chain: list[tuple[float, str]] = []
         if brain.lost:
             change = brain.local_view.image_change
-            chain.append((event.time_s, f"the image changed {change:.1f} times as much as driving can explain"))
-            chain.append((event.time_s, "so it was carried: it looks for itself, and believes only sights that agree"))
+            chain.append((event.time_s, f"the image changed {change:.1f} times as much as driving explains"))
+            chain.append((event.time_s, "so it was kidnapped: a submap begins, and hypotheses are weighed"))
         else:
             masses = " and ".join(f"{packet.mass:.0%}" for packet in self._now[:3])
-            chain.append((event.time_s, f"{len(self._now)} packets compete, with {masses} of all activity"))
+            chain.append((event.time_s, f"{len(self._now)} packets compete, with {masses} of the activity"))
         since = [entry for entry in self._seen if entry[0] >= event.time_s - LOOKS_BACK_S]
         looks = [(at, f"view {view} is recognised") for at, view in since[-MOST_VIEWS:]]
         views = [(view, f"seen {event.time_s - at:.1f} s before") for at, view in reversed(since[-MOST_VIEWS:])]
@@ -127,15 +125,9 @@ class Reasons:
         view = int(self._session.brain.experience_map.views[belief.experience])
         odds = odds_words(math.exp(belief.log_odds))
         chain = [
-            (
-                since_s,
-                "a view that it knew suggested this place, among others; a guess begins with odds against it",
-            ),
-            (event.time_s, f"of what it saw since, {_parts(spoken)} spoke for it and {_parts(against)} against"),
-            (
-                event.time_s,
-                f"it is likelier than all other places together, {odds}: here it acts, and learns nothing from it",
-            ),
+            (since_s, "a recognised view suggests this place, among others: a hypothesis, with odds against it"),
+            (event.time_s, f"of the evidence since, {_parts(spoken)} spoke for it and {_parts(against)} against"),
+            (event.time_s, f"likelier than all others together, {odds}: it is believed; the map waits for 1000:1"),
         ]
         self._keep(event, chain, [(view, "expected here")], since_s, (), (belief.experience,), tuple(said))
 
@@ -246,12 +238,25 @@ def _gap(cells: NDArray[np.integer], at: float, size: int) -> NDArray[np.float64
 def words_of(causes: tuple[m.SnapCause, ...]) -> str:
     """The causes in a few words."""
     if not causes:
-        return "no view put activity there"
+        return "by no view"
     first, more = causes[0], len(causes) - 1
     others = f" and {more} more" if more else ""
-    about = f"{_looks(first.looks)}, {first.share:.2f} of the injected activity, learnt {first.age_s:.0f} s before"
+    about = f"{_times(first.looks)}, {first.share:.0%} of the injection, learnt {first.age_s:.0f} s before"
     return f"by view {first.view} ({about}){others}"
 
 
-def _looks(count: int) -> str:
-    return "1 look" if count == 1 else f"{count} looks"
+def _times(count: int) -> str:
+    return "1 observation" if count == 1 else f"{count} observations"
+
+
+def why_no_route(session: Session) -> str:
+    """What keeps the robot from its goal, in a few words; "" while a route is known."""
+    told, map_ = session.pilot.goal_state, session.brain.experience_map
+    if told is None or told[1] not in ("exploring", "unreachable"):
+        return ""
+    goals = list(session.pilot.goals)
+    if not (map_.submap_of[goals] == map_.submap_of[map_.active]).any():
+        return "on another submap"
+    if np.isfinite(map_.temporal_map.times_to(goals)[map_.active]):
+        return "blocked on the way"
+    return "its links were deleted" if set(goals) & set(chain(*map_.dropped_links)) else "no links lead there"

@@ -135,7 +135,7 @@ class ExperienceMapParams:
         "beats")
     bias_sigma: float = param(
         0.01,
-        "how large a bias of the yaw rate may well be; what a few short loops seem to show beyond it is not believed",
+        "prior standard deviation of the bias of the yaw rate; a few short loops cannot show more",
         1e-4, 10.0, "rad/s")
     familiar_ground: bool = param(
         True, "ground that is recognised often gets no more views and experiences; off = every new observation is kept",

@@ -98,11 +98,11 @@ test("every event has a name, a mark and a place in the legend; what goes wrong 
     assert.ok(page.all("#legend li").every((row) => row.textContent.trim()));
     assert.ok(page.text("#events").includes("never heard of: text of never heard of"));
     assert.equal(page.toasted.size, 1); // of those there were: the warning
-    const late = { ...event(29, "unreachable", "no way to experience 12 is known"), number: 10_100 };
+    const late = { ...event(29, "unreachable", "no route to experience 12, on another submap"), number: 10_100 };
     page.hear({ type: "events", fresh: false, events: [late] });
-    await page.told("No way to experience 12 is known");
+    await page.told("No route to experience 12, on another submap");
     page.drag("#timeline", [[6 + (1188 * 29) / 60, 20]], () =>
-      assert.match(page.text("#event-tip"), /no way: no way to experience 12/),
+      assert.match(page.text("#event-tip"), /no route: no route to experience 12/),
     );
     await command("back_to_now");
   }));

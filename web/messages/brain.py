@@ -129,7 +129,7 @@ class MapLayer:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class TimesLayer:
-    """The temporal map: seconds to the goal when there is one, else from the robot. inf = no way known."""
+    """The temporal map: seconds to the goal when there is one, else from the robot. inf = no route known."""
 
     to_goal: bool
     seconds: NDArray[np.float32]  # (n,), rows as in the MapLayer of the same snapshot
@@ -216,6 +216,7 @@ class Goal:
     places_xy: NDArray[np.float32] = field(default_factory=lambda: np.zeros((0, 2), np.float32))
     lost: bool = False  # the robot does not know where it is, and so only believes what it says of the goal
     followed: bool = True  # the robot is on its way there, or there: nobody drives it, nor was it told to explore
+    why: str = ""  # no route is known, in a few words
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -58,9 +58,9 @@ class Facts:
 _GOALS: dict[GoalMeaning, tuple[str, str, str]] = {
     "tracking": ("flag", "going to the goal", "goal"),
     "coasting": ("flag", "by dead reckoning", "goal"),
-    "exploring": ("compass", "looking for a way", "no way yet"),
+    "exploring": ("compass", "looking for a route", "no route yet"),
     "arrived": ("check", "at the goal", "arrived"),
-    "unreachable": ("warn", "no way to the goal", "no way"),
+    "unreachable": ("warn", "no route to the goal", "no route"),
     "trusting": ("flag", "going where it believes the goal to be", "goal?"),
     "believed": ("lost", "believes to be at the goal", "arrived?"),
     "finding itself": ("lost", "relocalises before it goes on to the goal", "waits"),

@@ -100,7 +100,7 @@ def _goal(goal: Goal | None) -> dict[str, Any]:
         return table("Goal", [], "none: click the map")
     others = len(goal.places_xy) - 1
     rows = [
-        ("state", goal_status(goal).words),
+        ("state", ": ".join(filter(None, (goal_status(goal).words, goal.why)))),
         ("experience", f"#{goal.experience}" + (f" or {others} others" if others > 0 else "")),
     ]
     rows += [("time to goal", number(goal.eta_s, "s", 0)), ("distance to goal", number(goal.remaining_m, "m"))]

@@ -35,7 +35,7 @@ def test_without_the_views_that_led_to_it_there_is_no_such_snap() -> None:
 def test_what_was_not_led_to_by_a_view_is_refused() -> None:
     engine = an_engine(OFFICE)
     run_for(engine, 20)
-    words = "event must be a snap, closure, false look, lost moment or belief of late, got 7"
+    words = "event must be a recent snap, closure, false positive, loss or belief, got 7"
     with pytest.raises(ValueError, match=words):
         tell(engine, type="go_on_without", event=7)
     assert engine.run.session.tick_count == 20

@@ -5,10 +5,11 @@ from __future__ import annotations
 import re
 from itertools import pairwise
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from app.config import Config
 from app.pilot import Pilot
@@ -16,6 +17,7 @@ from app.session import Session, is_lost
 from app.views import events
 from app.views.events import PLACES_EVERY_S, EventWatch
 from app.views.history import SERIES_POINTS, STILL_CELLS, History
+from app.views.reasons import why_no_route
 
 from .sessions import a_session
 
@@ -49,9 +51,7 @@ def test_a_map_that_has_diverged_is_told_once() -> None:
     session.brain.experience_map.poses[-1, 0] = 1e6
     for _ in range(5):
         history.watch()
-    assert texts(history, "warning") == [
-        "the map has diverged: a correction rate of 0.9 is too high for all links at once"
-    ]
+    assert texts(history, "warning") == ["the map diverged: correction rate 0.9 is too high for all links at once"]
 
 
 def test_trail_path_and_series_grow(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -113,8 +113,8 @@ def test_false_positives_are_all_counted_and_marked_now_and_then() -> None:
     assert session.brain.local_view.false_positives == wrong > 50
     assert 3 <= len(marked) <= 5
     assert min(b.time_s - a.time_s for a, b in pairwise(marked)) >= 5.0 > marked[0].time_s - began_s
-    assert re.fullmatch(r"view \d+ instead of \d+", marked[0].text)
-    assert re.fullmatch(r"view \d+ instead of \d+, and \d+ more since the last mark", marked[1].text)
+    assert re.fullmatch(r"view \d+ reported instead of \d+", marked[0].text)
+    assert re.fullmatch(r"view \d+ reported instead of \d+, and \d+ more since the last mark", marked[1].text)
 
 
 def test_events_are_numbered_and_the_last_two_thousand_kept() -> None:
@@ -159,6 +159,25 @@ def test_of_a_goal_only_what_is_true_is_noted_and_once(monkeypatch: pytest.Monke
         assert seen("unreachable", False) == ["arrived", "unreachable"]
 
 
+def test_why_no_route_is_known_is_told() -> None:
+    """By the map alone: another submap, a way that is known but blocked, deleted links, none at all."""
+    far, near, none = np.array([np.inf, 0.0]), np.array([3.0, 0.0]), ()
+
+    def why(
+        state: str, submaps: tuple[int, int], times: NDArray[np.float64], dropped: tuple[tuple[int, int], ...]
+    ) -> str:
+        ways = SimpleNamespace(times_to=lambda _: times)
+        map_ = SimpleNamespace(submap_of=np.array(submaps), active=0, temporal_map=ways, dropped_links=dropped)
+        pilot = SimpleNamespace(goal_state=(1, state), goals=(1,))
+        return why_no_route(cast("Session", SimpleNamespace(pilot=pilot, brain=SimpleNamespace(experience_map=map_))))
+
+    assert why("exploring", (0, 1), far, none) == "on another submap"
+    assert why("exploring", (0, 0), near, none) == "blocked on the way"
+    assert why("unreachable", (0, 0), far, ((0, 1),)) == "its links were deleted"
+    assert why("unreachable", (0, 0), far, ((2, 3),)) == "no links lead there"
+    assert why("tracking", (0, 1), far, none) == ""
+
+
 def test_what_repeats_is_one_line_that_counts() -> None:
     """Also at any moment of the past: there the line counts what had happened by then."""
     session = a_session()
@@ -197,11 +216,11 @@ def test_deleted_links_are_noted_once_a_tick() -> None:
     assert [list(ends) for ends in map_.dropped_links] == first
     go_on(session, history, 3)
     i, j = first[0]
-    assert texts(history, "link") == [f"deleted: from experience {i} to {j} and 2 more, tried too often in vain"]
+    assert texts(history, "link") == [f"deleted: {i} to {j} and 2 more, failed too often"]
     ((i, j),) = fail(1)
     later = History(session)
     go_on(session, history, 1)
-    assert history.log.events[-1].text == f"deleted: from experience {i} to {j}, tried too often in vain"
+    assert history.log.events[-1].text == f"deleted: {i} to {j}, failed too often"
     EventWatch(session, later.log).watch()
     assert texts(later, "link") == [], "a watcher that comes later does not report old events"
 
@@ -226,12 +245,12 @@ def test_places_that_pose_cells_hold_twice_or_in_common_are_noted(monkeypatch: p
         return texts(history, "place")
 
     assert noted(PLACES_EVERY_S - 0.1) == []
-    assert noted(0.1) == noted(PLACES_EVERY_S) == ["places with several representations in the pose cells: 1"]
+    assert noted(0.1) == noted(PLACES_EVERY_S) == ["multiple representations in the pose cells: 1 place"]
     found.multiple_representations, found.hash_collisions = [1, 2], [3]
     assert len(noted(PLACES_EVERY_S - 0.1)) == 1
     assert noted(0.1) == [
-        "places with several representations in the pose cells: 2",
-        "states of the pose cells that stand for several places: 1",
+        "multiple representations in the pose cells: 2 places",
+        "hash collisions in the pose cells: 1 state",
     ]
 
 
@@ -245,7 +264,7 @@ def test_a_kidnap_recovery_is_noted() -> None:
     second.after_s, second.after_m = 4.25, 1.5
     history.watch()
     history.watch()
-    assert texts(history, "recovered") == ["knows where it is 4.2 s and 1.5 m after the kidnap"]
+    assert texts(history, "recovered") == ["right again 4.2 s and 1.5 m after the kidnap"]
     assert first.after_s is None
 
 

@@ -93,10 +93,10 @@ def test_what_fed_the_place_before_the_packet_came_into_being_does_not_count() -
 
 def test_the_words_of_causes() -> None:
     cause = SnapCause(312, 7, 1.2, 0.41, 90, 0.02, 61.3)
-    assert words_of((cause,)) == "by view 312 (7 looks, 0.41 of the injected activity, learnt 61 s before)"
+    assert words_of((cause,)) == "by view 312 (7 observations, 41% of the injection, learnt 61 s before)"
     assert words_of((cause, cause, cause)).endswith("before) and 2 more")
-    assert words_of((SnapCause(1, 1, 1.0, 1.0, 1, 0.1, 0.0),)).startswith("by view 1 (1 look, 1.00 of")
-    assert words_of(()) == "no view put activity there"
+    assert words_of((SnapCause(1, 1, 1.0, 1.0, 1, 0.1, 0.0),)).startswith("by view 1 (1 observation, 100% of")
+    assert words_of(()) == "by no view"
 
 
 # ---------------------------------------------------------------- in a run
@@ -148,7 +148,7 @@ def test_a_snap_is_explained_by_views_that_put_activity_where_it_led(carried: Ca
     assert tuple(seen.view for seen in snap.views) == views[:4]
     assert [at for at, _ in snap.chain] == sorted(at for at, _ in snap.chain)
     assert snap.chain[0][0] == snap.since_s
-    assert "the pose cells have relocalised" in " ".join(words for _, words in snap.chain)
+    assert ": relocalised" in " ".join(words for _, words in snap.chain)
     assert snap.camera.shape == carried.session.frame.image.shape
 
 
@@ -188,9 +188,9 @@ def test_a_false_look_says_which_view_was_right() -> None:
     assert false
     for look in false:
         reported, right = (seen.view for seen in look.views)
-        assert f"view {reported} instead of {right}" in look.text
+        assert f"view {reported} reported instead of {right}" in look.text
         assert look.without == (reported,)
     with pytest.raises(
-        ValueError, match="event must be a snap, closure, false look, lost moment or belief of late, got 777"
+        ValueError, match="event must be a recent snap, closure, false positive, loss or belief, got 777"
     ):
         history.events.reasons.of(777)

@@ -110,7 +110,7 @@ test("named places come first, then the nearest experiences; what is typed is so
     "library: 4.0 m to the right",
     "kitchen: the robot has not been near it yet",
     "Experience 7: 3.0 m to the right, 12 s",
-    "Experience 3: 4.0 m to the right, no way known",
+    "Experience 3: 4.0 m to the right, no route known",
   ];
   assert.deepEqual(listed(""), all);
   assert.deepEqual(listed("", 2), all.slice(0, 2));

@@ -143,16 +143,17 @@ def test_a_larger_world_is_scaled_and_low(stage: Bench) -> None:
         ("tracking", 7.4, "7 s"),
         ("tracking", 119.0, "119 s"),
         ("tracking", 300.0, "5 min"),
-        ("exploring", None, "? s"),
+        ("exploring", None, "no route yet: on another submap"),
         ("arrived", 0.0, "arrived"),
-        ("unreachable", None, "no way known"),
+        ("unreachable", None, "no route: on another submap"),
         ("arrived", 0.0, "arrived?"),
     ],
 )
 def test_the_flag_says_how_long(stage: Bench, state: str, eta: float | None, words: str) -> None:
     assert PLAIN.goal is not None
     way, arrival, lost = PLAIN.goal.route_xy[:1], PLAIN.goal.route_arrival_s[:1], words.endswith("?")
-    short = replace(PLAIN.goal, state=state, eta_s=eta, route_xy=way, route_arrival_s=arrival, lost=lost)
+    why = "on another submap" if "route" in words else ""
+    short = replace(PLAIN.goal, state=state, eta_s=eta, route_xy=way, route_arrival_s=arrival, lost=lost, why=why)
     stage.show(replace(PLAIN, goal=short))
     assert stage.says("/map/flag/pill", words)
 

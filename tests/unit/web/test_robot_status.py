@@ -38,8 +38,8 @@ def test_the_robot_and_its_goal_never_contradict_each_other() -> None:
             continue
         goal = goal_status(a_goal(state, lost=facts.lost, followed=mode == "goal"))
         if facts.lost:  # it knows neither that it is there nor that no way leads there
-            assert goal.short not in ("arrived", "no way", "no way yet")
-            assert goal.words not in ("at the goal", "no way to the goal", "looking for a way", "going to the goal")
+            assert goal.short not in ("arrived", "no route", "no route yet")
+            assert goal.words not in ("at the goal", "no route to the goal", "looking for a route", "going to the goal")
         if mode != "goal" and state != "arrived":  # nobody goes there
             assert goal.words == "the goal waits"
         if mode == "goal" and not facts.lost and not stands_still:  # one state, worded once

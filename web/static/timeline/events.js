@@ -23,7 +23,7 @@ const KINDS = {
   snap: { name: "snap", weight: 0, d: circle(5) },
   goal: { name: "goal set", weight: 4, d: "M-4 7v-15l10 4-8.4 4v7z" },
   arrived: { name: "arrived", weight: 4, d: "M-6 0l4 5 8-10", open: true },
-  unreachable: { name: "no way", weight: 4, d: "M-5-5l10 10M5-5l-10 10", open: true },
+  unreachable: { name: "no route", weight: 4, d: "M-5-5l10 10M5-5l-10 10", open: true },
   packet: { name: "packet put in", weight: 2, d: "M-5-5h10v10h-10z" },
   brain: { name: "brain", weight: 3, d: "M-5-5h10v10h-10z", open: true },
   office: { name: "office changed", weight: 1, d: "M0-6v12", open: true },

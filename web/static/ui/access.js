@@ -133,7 +133,7 @@ export function choices({ robot, to_goal, tags, named: office, experiences }, ty
   const sought = typed.trim().toLowerCase();
   const near = experiences.toSorted((a, b) => far(a) - far(b));
   const others = (sought ? near : spread(near, [robot])).map(({ id, x, y, seconds }) => {
-    const way = to_goal ? "" : seconds === null ? ", no way known" : `, ${Math.round(seconds)} s`;
+    const way = to_goal ? "" : seconds === null ? ", no route known" : `, ${Math.round(seconds)} s`;
     return { tag: null, experience: id, x, y, title: `Experience ${id}`, where: whereabouts(robot, { x, y }) + way };
   });
   return [...named, ...known, ...unknown, ...others]

@@ -244,9 +244,9 @@ def _in_steps(seconds: NDArray[np.float32], longest: float) -> NDArray[np.float3
 def promise(goal: Goal) -> str:
     """When it will be there, or how it stands with it."""
     status = goal_status(goal)
-    return status.seconds or {"no way yet": "? s", "goal": "? s", "no way": "no way known"}.get(
-        status.short, status.short
-    )
+    words = "? s" if status.short == "goal" else status.short
+    why = goal.why if words.startswith("no route") else ""
+    return status.seconds or (f"{words}: {why}" if why else words)
 
 
 def round_up(seconds: float) -> float:
