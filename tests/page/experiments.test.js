@@ -18,7 +18,7 @@ test("one is watched, and an order of one's own ends it", () =>
     await page.click(`${card} .go`);
     await page.told(`Watching: ${table.title}.`);
     assert.ok(!page.find("#gallery-dialog").open);
-    for (const words of ["Experiment table", "the paper's rules", "exploring", "of about 22:00"])
+    for (const words of [table.title, "the paper's rules", "exploring", "of about 22:00"])
       await page.says("#trial", words);
     await until("it runs", async () => (await state()).time_s > 0.3);
     const { running, trial } = await state();
@@ -50,7 +50,7 @@ test("there and back, by keyboard", () =>
     assert.ok(page.shown("#cell-none")); // nothing was run
     await page.click("#one-grid .cell[aria-label^='2 %, 8 x 8']");
     await page.says("#cell-title", "2 %, 8 x 8, our rules");
-    assert.equal(page.all(".dot").length, 0);
+    assert.equal(page.all(".dot").length, 10); // each plays its trial, from the start
     await page.click("#gallery-back");
     assert.equal(page.document.activeElement?.className, "trials");
     await page.click("#gallery-close");

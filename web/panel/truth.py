@@ -21,7 +21,7 @@ def numbers(snapshot: Snapshot) -> Content:
     again = snapshot.revisit_consistency
     rows = [
         ("map error, after alignment", number(snapshot.error_map_m, "m", 2)),
-        ("odometry alone", number(snapshot.error_odometry_m, "m", 2)),
+        ("odometry alone, after alignment", number(snapshot.error_odometry_m, "m", 2)),
     ]
     if snapshot.coverage is not None:
         rows.append(("floor explored, to 1 m", f"{100 * snapshot.coverage:.0f} %"))

@@ -54,7 +54,7 @@ const editor = new Editor(link, { open: () => files.open(), begin: () => fresh.a
 const exports = new Exports(() => timeline.time?.loop ?? null);
 const theme = new Theming(link);
 const help = new Help();
-const first = new FirstMinuteCard(link);
+const first = new FirstMinuteCard(link, (event) => panel.why(event));
 const speaker = new Speaker();
 const presenter = new Presenter(viewer, panel, link);
 const places = new PlaceList(command, () => panel.open("Inspect"));

@@ -169,12 +169,14 @@ type IndexIds = {
   "film": HTMLElementTagNameMap["section"];
   "film-cancel": HTMLElementTagNameMap["button"];
   "first": HTMLElementTagNameMap["section"];
+  "first-after": HTMLElementTagNameMap["span"];
   "first-close": HTMLElementTagNameMap["button"];
   "first-end": HTMLElementTagNameMap["p"];
   "first-explore": HTMLElementTagNameMap["button"];
   "first-find": HTMLElementTagNameMap["button"];
   "first-search": HTMLElementTagNameMap["progress"];
   "first-share": HTMLElementTagNameMap["progress"];
+  "first-why": HTMLElementTagNameMap["button"];
   "follow": HTMLElementTagNameMap["button"];
   "gallery-all": HTMLElementTagNameMap["div"];
   "gallery-back": HTMLElementTagNameMap["button"];

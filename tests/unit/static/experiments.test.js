@@ -63,7 +63,7 @@ test("a dot tells by its look, its face and its words how the trial went", () =>
 
 test("the note on the stage says what is being done, how far it is, and what came of it", () => {
   const now = trialWords(trial, 200);
-  assert.deepEqual([now.which, now.settings], ["Experiment table", "the paper's rules · 2 % · seed 7"]);
+  assert.deepEqual([now.which, now.settings], ["T", "the paper's rules · 2 % · seed 7"]);
   assert.deepEqual([now.doing, now.clock, now.share], ["exploring", "3:20 of about 25:00", 200 / 1500]);
   assert.equal(trialWords({ ...trial, altered: true }, 1).doing, "exploring, changed by hand");
   const ahead = trialWords({ ...trial, ahead: 0.439 }, 200);

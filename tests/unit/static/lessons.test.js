@@ -56,8 +56,8 @@ test("the next lesson is the next one that can be begun", () => {
 });
 
 test("a lesson says how long it is, and its number", () => {
-  assert.equal(cardFacts(card("a")), "A 4 · 10 s");
-  assert.equal(cardFacts(card("a", { minutes: 14.6, rounds: 3 })), "A 4 · 15 min · 3 rounds");
+  assert.equal(cardFacts(card("a")), "ACRA 2004 4 · 10 s");
+  assert.equal(cardFacts(card("a", { minutes: 14.6, rounds: 3 })), "ACRA 2004 4 · 15 min · 3 rounds");
   assert.equal(lessons.which(view(), card("a", { number: 7 })), "Lesson 7");
   assert.equal(lessons.which(view({ rounds: 3, round: 2 }), card("a")), "Lesson 1 · round 2 of 3");
   assert.equal(lessons.which(view(), card("a", { own: true })), "Lesson");

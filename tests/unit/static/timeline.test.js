@@ -72,7 +72,7 @@ test("names are within the timeline and none lies over another; what counts most
 });
 
 test("an event is told with its time and its name; what repeats is one line that counts, wherever it came from", () => {
-  assert.equal(words({ ...event(1, 61, "unreachable"), text: "to 5" }), "1:01 no way: to 5");
+  assert.equal(words({ ...event(1, 61, "unreachable"), text: "to 5" }), "1:01 no route: to 5");
   const several = (/** @type {number} */ k) => ({ ...event(k, 10 * k, "place"), line: "several", count: k });
   const news = [several(1), event(2, 15, "snap"), several(2), event(3, 21, "snap"), { ...several(3), since_s: 10 }];
   for (let k = 0; k <= news.length; k++) {

@@ -38,7 +38,7 @@ test("what was kept today is told by the hour, what is older by the day too", ()
   assert.match(words(13), /kept 1[45] Nov 2023, \d\d:\d\d$/);
 });
 
-const event = (/** @type {string} */ kind, text = "") => ({ kind, text });
+const event = (/** @type {string} */ kind, text = "") => /** @type {TimelineEvent} */ ({ kind, text, number: 7 });
 
 test("what matters is read aloud once, by its name; of too much the weightiest, in its order", () => {
   const speech = new Speech();
@@ -68,8 +68,11 @@ test("each of a newcomer's three things is done when it has happened, in any ord
   first.at(FirstMinute.TICKS - 1);
   first.onEvents([event("recovered"), event("goal")]);
   assert.deepEqual([first.explored, first.reached, first.found], [false, false, false]);
-  first.onEvents([event("kidnap"), event("lost"), event("recovered")]);
+  assert.deepEqual([first.after, first.why], ["", null]);
+  const believes = event("believes", "a place");
+  first.onEvents([event("kidnap"), event("lost"), believes, event("recovered", "right again after 2 s")]);
   assert.ok(first.found);
+  assert.deepEqual([first.after, first.why], ["right again after 2 s", believes.number]);
   first.at(FirstMinute.TICKS);
   assert.ok(!first.done);
   first.onEvents([event("arrived")]);

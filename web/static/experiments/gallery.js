@@ -3,7 +3,7 @@
 
 import { $, find, icon, make, say, svg } from "../ui/elements.js";
 import { engineWords, firstEngine, Grid } from "./grid.js";
-import { clock, sentence, toast } from "../ui/words.js";
+import { clock, sentence, sourceWords, toast } from "../ui/words.js";
 import { get, reasons } from "../net/post.js";
 
 /** The plan of an experiment's world: stands for its figure until there is one. @param {PlanDrawing} plan */
@@ -57,7 +57,7 @@ function cardOf(card, { watch, trials }) {
     { className: "card" },
     figureOf(card),
     make("h3", { textContent: card.title }),
-    make("p", { className: "second", textContent: `${card.paper} · ${card.world}` }),
+    make("p", { className: "second", textContent: `${sourceWords(card.paper)} · ${card.world}` }),
     make("p", { className: "asks", textContent: card.asks }),
     make("p", { className: "second facts", textContent: facts(card) }),
     row,
@@ -195,7 +195,7 @@ export class Gallery {
  */
 export function trialWords(trial, time_s) {
   const settings = [engineWords(trial.engine), ...trial.levels, `seed ${trial.seed}`].join(" · ");
-  const which = `Experiment ${trial.experiment}`;
+  const which = trial.title;
   if (trial.state !== "running") {
     const doing = trial.state === "over" ? `over: ${trial.outcome}` : `ended: ${trial.outcome}`;
     return { which, settings, doing, clock: "", share: trial.state === "over" ? 1 : null };

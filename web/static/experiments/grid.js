@@ -1,10 +1,11 @@
 // What was run of one experiment: a grid of cells, and the trials of the cell that is chosen as dots.
 
 import { clock, ended } from "../ui/words.js";
-import { $, make } from "../ui/elements.js";
+import { $, icon, make } from "../ui/elements.js";
 
 /** @type {Record<EngineName, string>} */
 const ENGINES = { ours: "our rules", paper: "the paper's rules" };
+const MOST_SEEDS = 50;
 const BEFORE_S = 10; // a trial plays from so long before its moment
 
 /** @param {EngineName} engine */
@@ -167,8 +168,25 @@ export class Grid {
       ? `${results.score}: ${cell.words}, ${count(cell.n)}.${cell.dots.length ? PLAYS : ""}`
       : "";
     $("cell-none").hidden = cell.dots.length > 0;
-    $("cell-none").textContent = `No trial of this was run here yet: ratslam experiment ${card.name} runs them all.`;
-    $("cell-dots").replaceChildren(...cell.dots.map((dot) => this.dot(cell, dot, results)));
+    $("cell-none").textContent =
+      `None of these was run here yet, so a dot plays its trial from the start. To run them all: ratslam experiment ${card.name}`;
+    const dots = cell.dots.map((dot) => this.dot(cell, dot, results));
+    $("cell-dots").replaceChildren(...(dots.length ? dots : this.seeds(card).map((seed) => this.unrun(cell, seed))));
+  }
+
+  /** Of the trials that the experiment has. @param {Card} card */
+  seeds({ seed, trials }) {
+    return Array.from({ length: Math.min(trials, MOST_SEEDS) }, (_, k) => seed + k);
+  }
+
+  /** A trial of which nothing is known. @param {Cell} cell @param {number} seed */
+  unrun(cell, seed) {
+    const title = `Seed ${seed}: not run here yet. Plays from the start.`;
+    const button = make("button", { type: "button", className: "dot", title, ariaLabel: title });
+    button.dataset.look = "plain";
+    button.append(make("b", {}, icon("play")), make("small", { textContent: String(seed) }));
+    button.addEventListener("click", () => this.watch({ ...this.wish(cell), seed }));
+    return make("li", {}, button);
   }
 
   /** @param {Cell} cell @param {Dot} dot @param {Results} results */

@@ -3,6 +3,7 @@
 
 import { $, find, keep, kept, make, setIcon } from "../ui/elements.js";
 import { DRIVING, GROUPS, written } from "../ui/keys.js";
+import { sentence } from "../ui/words.js";
 
 const ARROWS = ["↑", "←", "↓", "→"];
 
@@ -74,8 +75,8 @@ const STRIDE = 300; // ticks between two looks at how far it is
 
 /** The first visit, as a card. */
 export class FirstMinuteCard {
-  /** @param {import("../net/connection.js").Connection} link */
-  constructor(link) {
+  /** @param {import("../net/connection.js").Connection} link @param {(event: number) => void} why shows why it happened */
+  constructor(link, why) {
     this.link = link;
     this.box = $("first");
     this.things = new FirstMinute();
@@ -88,6 +89,7 @@ export class FirstMinuteCard {
     this.later = [];
     $("first-explore").addEventListener("click", () => this.hurry());
     $("first-find").addEventListener("click", () => this.find());
+    $("first-why").addEventListener("click", () => this.things.why !== null && why(this.things.why));
     $("first-close").addEventListener("click", () => this.show(false));
     $("help-first").addEventListener("click", () => {
       $("help-dialog").close();
@@ -161,6 +163,8 @@ export class FirstMinuteCard {
     $("first-share").hidden = !this.hurries;
     $("first-share").value = this.tick / FirstMinute.TICKS;
     $("first-end").hidden = !done;
+    $("first-after").textContent = this.things.after ? sentence(this.things.after) : "The ? at the top tells the rest.";
+    $("first-why").hidden = this.things.why === null;
   }
 
   /** Let it run as fast as the machine can until it is found again, and play on. */
@@ -194,6 +198,9 @@ export class FirstMinute {
   reached = false;
   found = false;
   #moved = false; // kidnapped, and not found again
+  after = ""; // how long that took
+  /** @type {number | null} the event in which it believed its place again */
+  why = null;
 
   /** Ticks of exploring before the robot knows enough to be sent somewhere: three minutes. */
   static TICKS = 1800;
@@ -203,12 +210,16 @@ export class FirstMinute {
     this.explored ||= tick >= FirstMinute.TICKS;
   }
 
-  /** @param {{ kind: string }[]} events those that have just happened */
+  /** @param {Pick<TimelineEvent, "kind" | "text" | "number">[]} events those that have just happened */
   onEvents(events) {
-    for (const { kind } of events) {
+    for (const { kind, text, number } of events) {
       if (kind === "arrived") this.reached = true;
       else if (kind === "kidnap") this.#moved = true;
-      else if (kind === "recovered" && this.#moved) this.found = true;
+      else if (kind === "believes" && this.#moved) this.why = number;
+      else if (kind === "recovered" && this.#moved) {
+        this.found = true;
+        this.after = text;
+      }
     }
   }
 

@@ -18,6 +18,7 @@ import {
   which,
   Question,
 } from "./question.js";
+import { sourceWords } from "../ui/words.js";
 import { linked, nextAfter, setDone } from "./list.js";
 import { phone } from "../viewer/viewer.js";
 import { TABS, VIEWS } from "../shared.js";
@@ -112,7 +113,7 @@ export class Lesson {
       ...text.formulas.map((formula) => formulaBox(formula, (name) => this.tune(name), this.panel.valueOf)),
     );
     say($("lesson-title"), text.card.title);
-    say($("lesson-paper"), text.card.paper);
+    say($("lesson-paper"), sourceWords(text.card.paper));
     say($("lesson-text"), text.text);
     $("lesson-what").open = false;
     this.fold(false);

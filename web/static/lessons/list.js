@@ -2,7 +2,7 @@
 
 import { $, find, icon, keep, kept, make } from "../ui/elements.js";
 import { get, reasons } from "../net/post.js";
-import { sentence } from "../ui/words.js";
+import { sentence, sourceWords } from "../ui/words.js";
 
 /** Each begins with the lesson named here; those behind it belong to it, too. */
 const GROUPS = new Map([
@@ -39,7 +39,7 @@ export function nextAfter(cards, name) {
 /** @param {LessonCard} card */
 export function cardFacts({ paper, minutes, rounds }) {
   const long = minutes < 1.5 ? `${Math.max(5, 5 * Math.round(minutes * 12))} s` : `${Math.round(minutes)} min`;
-  return `${paper} · ${long}${rounds > 1 ? ` · ${rounds} rounds` : ""}`;
+  return `${sourceWords(paper)} · ${long}${rounds > 1 ? ` · ${rounds} rounds` : ""}`;
 }
 
 /** The name of a lesson in an address, `#lesson=NAME`; null without one. @param {string} hash */

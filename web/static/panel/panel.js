@@ -233,6 +233,11 @@ export class Panel {
     this.awaited = LATE_STATES;
   }
 
+  /** Why something happened, by the number of its event. @param {number} event */
+  why(event) {
+    this.awaits(this.link.ask({ type: "inspect", event }));
+  }
+
   /**
    * Opens the tab that tells about what was just chosen; a page that has just loaded keeps its tab, and one that shows less than all
    * is disturbed by its own choice only.

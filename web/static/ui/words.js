@@ -12,6 +12,17 @@ export const sentence = (text) => text[0].toUpperCase() + ended(text.slice(1));
 /** @param {number} bytes */
 export const megabytes = (bytes) => `${(bytes / 1e6).toFixed(1)} MB`;
 
+const PAPERS = /** @type {Record<string, string>} */ ({
+  A: "ACRA 2004",
+  B: "ACRA 2005",
+  C: "IROS 2005",
+  D: "ACRA 2006",
+});
+
+/** A source with its papers' names: "A 6.2, B 5" is "ACRA 2004 6.2, ACRA 2005 5". @param {string} source */
+export const sourceWords = (source) =>
+  source.replace(/(^|[,;] )([A-D])(?= |$)/g, (_, before, letter) => before + PAPERS[letter]);
+
 /** 1:30, 1:02:30. @param {number} seconds */
 export function clock(seconds) {
   const whole = Math.floor(seconds);

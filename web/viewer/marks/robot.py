@@ -129,7 +129,8 @@ class GhostRobot:
         self.robot.frame.visible = bool(np.array_equal(at, there))
         self.robot.place(at, pose.heading_rad)
         x, y = there.tolist()
-        self._label.show(words_of(off_m), self._palette.sheet, (x, y - self.robot.radius - ABOVE, LABEL_Z))
+        below = max(y - self.robot.radius - ABOVE, LABEL_M - float(self._half[1]))  # not over the plate's title
+        self._label.show(words_of(off_m), self._palette.sheet, (x, below, LABEL_Z))
 
     def show_path(self, path: NDArray[np.float64]) -> None:
         """(n, 2) on the plate."""
