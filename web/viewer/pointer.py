@@ -13,7 +13,20 @@ from typing import Literal
 
 import numpy as np
 
-from web.messages import Accepted, Closure, Command, Inspect, Kidnap, KnownPlace, Refused, SetDoor, SetGoal, Snapshot
+from web.messages import (
+    Accepted,
+    Closure,
+    Command,
+    Inspect,
+    Kidnap,
+    KnownPlace,
+    Refused,
+    RunUntil,
+    SetDoor,
+    SetGoal,
+    SetMode,
+    Snapshot,
+)
 from web.viewer.marks.names import Z as NAMES_Z
 from web.viewer.plates.map_plate import NODE_Z, MapPlate, on_sheet
 from web.viewer.plates.office_plate import OfficePlate
@@ -100,9 +113,16 @@ class Pointer:
         """The place of the map that is known by this name becomes the goal."""
         known = next((place.map_xy for place in places if place.name == name), None)
         if known is None:
-            why = f"the map does not know the {name}: the robot has not been there"
-            return Meaning(why[0].upper() + why[1:], lambda: click.on_answer(f"No goal set: {why}"))
+            words = f"The map does not know the {name} yet. Click: the robot explores until it comes there"
+            return Meaning(words, lambda: self._explore_to(name, click))
         return Meaning(f"Click: the robot goes to the {name}", lambda: self._ask(known, click, plate, now_s))
+
+    def _explore_to(self, name: str, click: Click) -> None:
+        def answered(answer: Answer) -> None:
+            click.answered(answer, f"It does not look for the {name}")
+
+        self._send(SetMode(type="set_mode", mode="explore"), answered)
+        self._send(RunUntil(type="run_until", what="place", place=name), answered)
 
     def _ask(self, place: tuple[float, float], click: Click, plate: MapPlate, now_s: float) -> None:
         self._asked = (place, now_s, None)
