@@ -200,7 +200,7 @@ test("a stored view is shown beside what is seen now; why a false positive came 
     const inspect = await page.tab("Inspect");
     await page.push("false positive", inspect);
     await page.says(inspect, "What led to it");
-    await page.says(inspect, /\d+:\d\d view \d+ is reported instead: 20%/);
+    await page.says(inspect, /\d+:\d\d view \d+ is reported instead: .false_positives. is 20%/);
     assert.equal(page.all("#panel .seen canvas").length, 2);
     await page.click("#panel .seen button");
     await page.says(inspect, "local view cell");
