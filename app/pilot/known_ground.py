@@ -20,8 +20,6 @@ OPENING_GAP_M, OPENING_MOST_M = 0.7, 2.5  # ... whose place is so much before th
 OPENING_BEAMS = 3  # must have seen an opening
 OPENING_AGAIN_S = 120.0  # one that has been tried is tried again after this time, after twice as long the next time
 THIN_M = 0.8  # the map is thin where no experience is about this near
-FAR_M = 2.8  # an opening is far when it is so far from all experiences ...
-FAR_FINE = 4  # ... what is near one is marked in cells of this part of that distance
 
 _Array = NDArray[np.float64]
 
@@ -98,30 +96,16 @@ class KnownGround:
         least: so many beams must have seen an opening; a single one may be a false echo. Only what lies on the robot's own
         submap counts: where the others lie to it is unknown.
         """
-        rows, beams = np.nonzero(self._seen_m[: self.count] >= OPENING_M)
-        away = np.minimum(self._seen_m[rows, beams] - OPENING_GAP_M, OPENING_MOST_M)
-        return self._thin(experiences, rows, beams, away, THIN_M, 1, least)
-
-    def far_openings(self, experiences: ExperienceMap) -> tuple[NDArray[np.int64], _Array]:
-        """The same, of places that lie far from all experiences: there a new street or hall begins."""
-        rows, beams = np.nonzero(self._seen_m[: self.count] >= FAR_M + OPENING_GAP_M)
-        away = self._seen_m[rows, beams].astype(np.float64) - OPENING_GAP_M
-        return self._thin(experiences, rows, beams, away, FAR_M, FAR_FINE, OPENING_BEAMS)
-
-    def _thin(
-        self, experiences: ExperienceMap, rows: NDArray[np.int64], beams: NDArray[np.int64], away: _Array, reach: float,
-        fine: int, least: int,
-    ) -> tuple[NDArray[np.int64], _Array]:  # fmt: skip
-        """Of the places so far `away` (m) along these beams of these experiences, those that nothing known is near."""
         poses, submaps = experiences.poses[: self.count], experiences.submap_of[: self.count]
         own = submaps == submaps[experiences.active]
-        rows, beams, away = rows[own[rows]], beams[own[rows]], away[own[rows]]
+        rows, beams = np.nonzero((self._seen_m[: self.count] >= OPENING_M) & own[:, None])
+        away = np.minimum(self._seen_m[rows, beams] - OPENING_GAP_M, OPENING_MOST_M)
         done = [tried[:3] for tried in self._done if own[tried[0]] and tried[3] > self.now_s]
         heading = poses[rows, 2] + self._angles[beams]
         places = poses[rows, :2] + away[:, None] * np.stack([np.cos(heading), np.sin(heading)], axis=1)
-        thin = _far_from(places, np.concatenate([poses[own, :2], placed(done, poses)]), reach, fine)
+        thin = _far_from(places, np.concatenate([poses[own, :2], placed(done, poses)]), THIN_M)
         rows, places = rows[thin], places[thin]
-        cells = np.floor(places / reach).astype(np.int64)
+        cells = np.floor(places / THIN_M).astype(np.int64)
         _, which, count = np.unique(cells, axis=0, return_inverse=True, return_counts=True)
         often = count[which.ravel()] >= least
         return rows[often].astype(np.int64), places[often]
@@ -137,19 +121,18 @@ def placed(points: list[tuple[int, float, float]], poses: _Array) -> _Array:
     return np.stack([x + c * rows[:, 1] - s * rows[:, 2], y + s * rows[:, 1] + c * rows[:, 2]], axis=1)
 
 
-def _far_from(places: _Array, others: _Array, reach: float, fine: int) -> NDArray[np.bool_]:
-    """Which of the places (k, 2) are farther than about `reach` (1 to 1 + 1/fine times) from all others (n, 2)."""
+def _far_from(places: _Array, others: _Array, reach: float) -> NDArray[np.bool_]:
+    """Which of the places (k, 2) are farther than about `reach` (1 to 2 times) from all others (n, 2)."""
     if not len(places):
         return np.zeros(0, np.bool_)
-    cell = reach / fine
     low = np.minimum(places.min(axis=0), others.min(axis=0)) - 2 * reach
     high = np.maximum(places.max(axis=0), others.max(axis=0)) + 2 * reach
-    size = np.ceil((high - low) / cell).astype(np.int64)
-    at = np.floor((others - low) / cell).astype(np.int64)
+    size = np.ceil((high - low) / reach).astype(np.int64)
+    at = np.floor((others - low) / reach).astype(np.int64)
     known = np.zeros((int(size[0]), int(size[1])), np.bool_)
     known[at[:, 0], at[:, 1]] = True
     for axis in (0, 1):
-        known = np.logical_or.reduce([np.roll(known, shift, axis) for shift in range(-fine, fine + 1)])
-    mine = np.floor((places - low) / cell).astype(np.int64)
+        known = np.logical_or.reduce([np.roll(known, shift, axis) for shift in (-1, 0, 1)])
+    mine = np.floor((places - low) / reach).astype(np.int64)
     free: NDArray[np.bool_] = ~known[mine[:, 0], mine[:, 1]]
     return free

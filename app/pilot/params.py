@@ -11,7 +11,7 @@ from disk.parameter import check_ranges, param
 # fmt: off
 
 
-@kind("parameters of pilot/2")
+@kind("parameters of pilot/3")
 @dataclass(frozen=True)
 class PilotParams:
     """How the robot drives, explores, follows routes, and seeks; without `seek` it follows walls, looks back and crosses."""
@@ -43,29 +43,15 @@ class PilotParams:
         "0 = straight on", 0.0, 3.0, "m")
     stuck_s: float = param(6.0, "without progress for this long, the robot frees itself", 1.0, 60.0, "s")
     seek: bool = param(
-        True, "the robot seeks where its map is thin and goes back to old ground; off = it only wanders",
+        True, "the robot goes on to new ground, closes loops and goes back on purpose; off = it only wanders",
         source="ours; off: C IV.D")
-    seek_after_s: float = param(
-        45.0, "time of wandering between two trips, unless there is more to see far off", 0.0, 1e5, "s")
-    openings_every: int = param(
-        2, "of so many trips one goes into an opening, the others to places long not visited", 1, 1000)
-    search: bool = param(
-        True, "on a submap, as after a kidnap, it only goes on to new ground, so that it meets the rest of its map")
-    return_after_m: float = param(
-        25.0, "after so long a way on new ground the robot goes back to old ground; twice as long each time it came back",
-        1.0, 1e5, "m")
     return_sigma_m: float = param(
-        3.0, "it also goes back when odometry may be wrong by this since it left old ground", 0.01, 1e3, "m")
-    far_openings: bool = param(False, "openings far from all experiences are sought first, one after the other")
-    home_share: float = param(
-        0.5, "a metre that a far opening is away from where the map began counts as so much of a metre of the way there",
-        0.0, 10.0)
+        3.0, "it goes back to known ground when odometry may be off by this since it left that", 0.01, 1e3, "m")
     loop_share: float = param(
-        0.0, "known ground nearer than this share of the way there by the links is driven along until a loop closes", 0.0,
+        0.25, "known ground nearer than this share of the way there by the links is driven along until a loop closes", 0.0,
         1.0)
     far_look_back_m: float = param(
-        20.0, "on a trip into far openings: distance driven before it turns back to look; each turn costs heading", 1.0,
-        1000.0, "m")
+        20.0, "on new ground: distance driven before it turns back to look; each turn costs heading", 1.0, 1000.0, "m")
 
     def __post_init__(self) -> None:
         check_ranges(self)

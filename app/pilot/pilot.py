@@ -179,7 +179,7 @@ class Pilot:
         self, ranges_m: NDArray[np.float32], odometry: Odometry, experiences: ExperienceMap
     ) -> tuple[float, float] | None:
         """The drive on a trip of its own choice. None: it wanders, or turns back to look."""
-        if self._seeker.into_far:
+        if self._seeker.on_new_ground:
             if self._explorer.doing is not Behaviour.LOOKING_BACK:
                 self._explorer.travel(abs(odometry.speed * odometry.dt), self.params)
             if self._explorer.doing is Behaviour.LOOKING_BACK:

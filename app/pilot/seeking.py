@@ -1,18 +1,14 @@
-"""[ours] Seeking: now and then the robot leaves off wandering and drives somewhere on purpose, over its own map.
+"""[ours] Exploring on purpose: where to drive next, over its own map, and why.
 
-Wandering follows walls and crosses at random, as in IROS 2005; nothing in it seeks what the map lacks. The robot goes,
-in this order: back to old ground, if it has been on new ground for long, so that its error cannot grow without bound
-(it dares twice as far each time it came back, since its wheels are then known better); along known ground that is near
-but far by the links, which closes a loop, if `loop_share` is set. Only when nothing of that is left does it wander, and
-go into openings near by; in a large map by turns with where it has not been for longest, since openings alone lead on
-and on into new corridors and close no loop. On a submap, as after a kidnap, it looks for the rest of its map: it does
-not go back, but into one opening after the other, round the posts of doors, and near where the submap began: perhaps it
+Wandering follows walls and crosses at random, as in IROS 2005; nothing in it seeks what the map lacks. The robot goes, in
+this order: back to old ground when its odometry may be off by too much since it was last there; along known ground that is
+near but far by the links, which closes a loop; into the opening that it reaches soonest. Only where nothing is new does it
+wander, and between whiles visit the place where it has not been for longest. On a submap, as after a kidnap, it looks for the
+rest of its map: it does not go back, any beam makes an opening, and those near where the submap began come first: perhaps it
 was not carried at all, and then the rest lies there. Its input is map, sonars and odometry only.
-test_seeking.py::{test_it_goes_where_open_floor_was_seen, test_far_openings_are_sought_one_after_the_other,
-test_on_new_ground_for_long_it_goes_back, test_it_dares_twice_as_far_each_time_it_comes_back,
-test_with_nothing_new_it_goes_where_it_has_not_been_for_longest,
-test_in_a_small_map_every_trip_goes_into_an_opening, test_on_a_submap_it_goes_into_every_opening,
-test_on_a_submap_it_begins_where_that_began}.
+test_seeking.py::{test_it_goes_where_open_floor_was_seen, test_on_new_ground_for_long_it_goes_back,
+test_with_nothing_new_it_goes_where_it_has_not_been_for_longest, test_while_there_is_an_opening_it_does_not_wander,
+test_on_a_submap_it_does_not_go_back, test_on_a_submap_it_begins_where_that_began}.
 """
 
 from __future__ import annotations
@@ -24,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.pilot.bars import Bars
-from app.pilot.known_ground import FAR_M, OLD_AFTER_S, OPENING_BEAMS, OPENING_GAP_M, PLACE_REACH_M, KnownGround, placed
+from app.pilot.known_ground import OLD_AFTER_S, OPENING_BEAMS, OPENING_GAP_M, PLACE_REACH_M, KnownGround, placed
 from app.pilot.local_movement import LocalMovement
 from app.pilot.params import PilotParams
 from app.pilot.route_following import RouteFollower
@@ -32,7 +28,8 @@ from disk import kind
 from ratslam_core import ExperienceMap, Odometry, Pose2
 
 TRIP_MOST_S = 150.0  # a trip is given up after this time
-SMALL_MAP_S = 60.0  # every trip goes into an opening while the robot can reach all that it knows within this time
+CHOOSE_S = 5.0  # while it wanders, it looks for something new as often ...
+WANDER_S = 45.0  # ... and after this time it visits an old place
 LONG_AGO_S = 120.0  # places visited more lately than this are not sought again
 SEARCH_SHARE = 0.1  # the rest of its map is looked for while another submap is larger than this share of its own ...
 SEARCH_HOME = 2.0  # ... metres of the way there that a metre from where its submap began to an opening counts as ...
@@ -43,7 +40,7 @@ INTO_FREE_M = 0.2  # ... or when less than this is free towards it
 _Point = tuple[float, float]
 
 
-@kind("seeker/3")
+@kind("seeker/4")
 class Seeker:
     """Decides when and where to drive on purpose, and drives there. `follower` is set on the way."""
 
@@ -51,17 +48,14 @@ class Seeker:
         self.ground = KnownGround(sonar_angles_rad)
         self.follower: RouteFollower | None = None
         self.returning = False
+        self.reason = ""  # of the trip, in words; "" while it wanders
         self._bars = bars
         self._opening: Pose2 | None = None  # what to drive into at the end of the trip, in the frame of its experience
         self._closer = LoopCloser(sonar_angles_rad)
-        self._far = False  # whether that is a far one
-        self._there = False  # whether it has come there
         self._into_s = -1.0  # time of driving into it, below 0 on the way there
         self._trip_s = 0.0
         self._wander_s = 0.0  # time since the last trip
-        self._wait_s = math.inf  # time of wandering before the next; not known before the first
-        self._trips = 0
-        self._dares = 1.0  # so many times as far on new ground as at first; twice as far each time it comes back
+        self._wait_s = 0.0  # time before it chooses again
 
     @property
     def failed(self) -> bool:
@@ -69,19 +63,18 @@ class Seeker:
         return self.follower is not None and self.follower.failed
 
     @property
-    def into_far(self) -> bool:
-        """Whether it drives into a far opening, over new ground."""
-        return self.follower is not None and (self._far or bool(self._closer.road)) and self._into_s >= 0.0
+    def on_new_ground(self) -> bool:
+        """Whether it drives into an opening, or along a road that may close a loop."""
+        return self.follower is not None and self._into_s >= 0.0
 
     @property
     def rests(self) -> bool:
         """Whether to stop it would change nothing."""
-        plans = self.follower is not None or self._opening is not None or self._far or self._wander_s != 0.0
-        return not plans and self._closer.rests
+        return self.follower is None and self._wander_s == self._wait_s == 0.0 and self._closer.rests
 
     def stop(self) -> None:
         """Something else is wanted of the robot."""
-        self.follower, self._opening, self._far, self._wander_s = None, None, False, 0.0
+        self.follower, self._opening, self._wander_s, self._wait_s, self.reason = None, None, 0.0, 0.0, ""
         self._closer.stop()
 
     def step(
@@ -97,8 +90,9 @@ class Seeker:
             return None
         if self.follower is None:
             self._wander_s += odometry.dt
-            if self._wander_s > min(self._wait_s, p.seek_after_s):
-                self._wander_s = 0.0
+            self._wait_s -= odometry.dt
+            if self._wait_s <= 0.0:
+                self._wait_s = CHOOSE_S
                 self._choose(experiences, local, ranges_m, p)
             if self.follower is None:
                 return None
@@ -106,7 +100,7 @@ class Seeker:
         aim = self._aim(self.follower, experiences, local, odometry.dt, p)
         if aim is None:
             self._end(experiences)
-        return aim if aim is None or not self.into_far else _in_the_middle(aim, ranges_m)
+        return aim if aim is None or not self._closer.road else _in_the_middle(aim, ranges_m)
 
     def _aim(
         self, follower: RouteFollower, experiences: ExperienceMap, local: LocalMovement, dt: float, p: PilotParams
@@ -128,46 +122,37 @@ class Seeker:
             return None
         place = experiences.pose(follower.goal).compose(self._opening)
         here = experiences.robot.inverse().compose(place)
-        self._there = math.hypot(here.x, here.y) < (FAR_M / 2 if self._far else INTO_REACH_M)
-        x, y = local.gap_towards(here.x, here.y, p) if _searching(experiences, p) else (here.x, here.y)
+        there = math.hypot(here.x, here.y) < INTO_REACH_M
+        x, y = local.gap_towards(here.x, here.y, p) if _searching(experiences) else (here.x, here.y)
         blocked = local.free_way(math.atan2(y, x), p) < INTO_FREE_M
-        return None if self._there or blocked else (x, y)
+        return None if there or blocked else (x, y)
 
     def _end(self, experiences: ExperienceMap) -> None:
         assert self.follower is not None
-        if self.returning and self.ground.new_m == 0.0:
-            self._dares *= 2
         goal = experiences.pose(self.follower.goal)
         self.ground.been_at(goal.x, goal.y, experiences.poses)
-        if self._opening is not None and not (self._far and self._there):  # beyond a far one there may be more
+        if self._opening is not None:
             self.ground.tried(self.follower.goal, self._opening.x, self._opening.y, experiences.poses)
         self.stop()
 
     def _choose(
         self, experiences: ExperienceMap, local: LocalMovement, ranges_m: NDArray[np.float32], p: PilotParams
     ) -> None:
-        """Old ground if the robot has been on new ground for long; else a loop to close; else a far opening; else an
-        opening near by, in a large map by turns with the place that was not visited for longest."""
-        times = experiences.temporal_map.times_to(experiences.active)
-        self._wait_s, self._trip_s, self._into_s, self._there = 0.0, 0.0, -1.0, False
-        drift_m = experiences.params.odometry_drift * self.ground.new_m
-        searching = _searching(experiences, p)
-        far = self.ground.new_m > p.return_after_m * self._dares or drift_m > p.return_sigma_m
-        self.returning = far and not searching
-        goal = self._old_ground(times) if self.returning else None
+        """Old ground if odometry may be far off; else a loop to close; else the nearest opening; else, after wandering,
+        the place that was not visited for longest."""
+        times, searching = experiences.temporal_map.times_to(experiences.active), _searching(experiences)
+        self._trip_s, self._into_s = 0.0, -1.0
+        off_m = experiences.params.odometry_drift * self.ground.new_m
+        goal = self._old_ground(times) if off_m > p.return_sigma_m and not searching else None
         self.returning = goal is not None
+        if self.returning:
+            self.reason = f"back to known ground: off by up to {off_m:.1f} m"
         if goal is None and self._closer.choose(experiences, ranges_m, times, self.ground.now_s, p):
             goal, self._into_s = self._closer.road[0], 0.0
-        if goal is None and p.far_openings and not searching:
-            goal = self._best_far_opening(experiences, local, times, p)
+            self.reason = f"to close a loop: {times[goal]:.0f} s away by the links"
         if goal is None:
-            self._trips += 1
-            small = float(np.max(times, initial=0.0, where=np.isfinite(times))) < SMALL_MAP_S
-            if searching or small or self._trips % p.openings_every == 0:
-                goal = self._nearest_opening(experiences, times, p, SEARCH_BEAMS if searching else OPENING_BEAMS)
-            if goal is None or not searching:
-                self._wait_s = p.seek_after_s
-        if goal is None and not searching:
+            goal = self._nearest_opening(experiences, local, times, p, SEARCH_BEAMS if searching else OPENING_BEAMS)
+        if goal is None and self._wander_s > WANDER_S and not searching:
             goal = self._long_ago(times)
         if goal is not None:
             self.follower = RouteFollower(goal, self._bars)
@@ -177,42 +162,29 @@ class Seeker:
         old = old[self.ground.last_s[old] - self.ground.made_s[old] > OLD_AFTER_S] if len(old) else old
         return int(old[np.argmin(times[old])]) if len(old) else None
 
-    def _best_far_opening(
-        self, experiences: ExperienceMap, local: LocalMovement, times: NDArray[np.float64], p: PilotParams
-    ) -> int | None:
-        """The one that costs least: time to get there, and its distance from where the map began, since what is near
-        that closes small loops."""
-        rows, places = self.ground.far_openings(experiences)
-        reached = np.isfinite(times[rows])
-        rows, places = rows[reached], places[reached]
-        if not len(rows):
-            return None
-        poses, robot = experiences.poses, experiences.robot
-        home = np.hypot(places[:, 0] - poses[0, 0], places[:, 1] - poses[0, 1])
-        leg = np.hypot(*(places - poses[rows, :2]).T)
-        near = np.hypot(poses[rows, 0] - robot.x, poses[rows, 1] - robot.y) < PLACE_REACH_M
-        bearing = np.arctan2(places[:, 1] - robot.y, places[:, 0] - robot.x) - robot.heading_rad
-        turn = np.abs(wrapped(bearing))
-        cost = times[rows] * ~near + (leg + p.home_share * home) / p.cruise_speed + near * turn / p.turn_rate
-        best = int(np.argmin(cost))
-        if near[best] and local.free_way(float(bearing[best]), p) > INTO_FREE_M:
-            self._into_s = 0.0  # it sees it from here
-        self._far = True
-        return self._into(experiences, int(rows[best]), places[best])
-
     def _nearest_opening(
-        self, experiences: ExperienceMap, times: NDArray[np.float64], p: PilotParams, least: int
+        self, experiences: ExperienceMap, local: LocalMovement, times: NDArray[np.float64], p: PilotParams, least: int
     ) -> int | None:
+        """The one that is reached soonest: over the links to where it was seen from, or straight if that is near by."""
         rows, places = self.ground.openings(experiences, least)
         reached = np.isfinite(times[rows])
         rows, places = rows[reached], places[reached]
         if not len(rows):
             return None
-        cost = times[rows]
-        if _searching(experiences, p):
-            x, y = experiences.poses[np.argmax(experiences.submap_of == experiences.submap_of[experiences.active]), :2]
+        poses, robot = experiences.poses, experiences.robot
+        near = np.hypot(poses[rows, 0] - robot.x, poses[rows, 1] - robot.y) < PLACE_REACH_M
+        begin = np.where(near[:, None], (robot.x, robot.y), poses[rows, :2])
+        leg_s = np.hypot(*(places - begin).T) / p.cruise_speed
+        bearing = wrapped(np.arctan2(places[:, 1] - robot.y, places[:, 0] - robot.x) - robot.heading_rad)
+        cost = leg_s + np.where(near, np.abs(bearing) / p.turn_rate, times[rows])
+        if _searching(experiences):
+            x, y = poses[np.argmax(experiences.submap_of == experiences.submap_of[experiences.active]), :2]
             cost = cost + SEARCH_HOME * np.hypot(places[:, 0] - x, places[:, 1] - y) / p.cruise_speed
         best = int(np.argmin(cost))
+        if near[best] and local.free_way(float(bearing[best]), p) > INTO_FREE_M:
+            self._into_s = 0.0  # it sees it from here
+        away = math.hypot(places[best, 0] - robot.x, places[best, 1] - robot.y)
+        self.reason = f"new ground, {away:.0f} m away"
         return self._into(experiences, int(rows[best]), places[best])
 
     def _into(self, experiences: ExperienceMap, goal: int, place: NDArray[np.float64]) -> int:
@@ -225,13 +197,13 @@ class Seeker:
         if not len(known):
             return None
         goal = int(known[np.argmin(self.ground.last_s[known])])
-        return goal if self.ground.now_s - self.ground.last_s[goal] > LONG_AGO_S else None
+        since_s = self.ground.now_s - self.ground.last_s[goal]
+        self.reason = f"not seen for {since_s / 60:.0f} min"
+        return goal if since_s > LONG_AGO_S else None
 
 
-def _searching(experiences: ExperienceMap, p: PilotParams) -> bool:
+def _searching(experiences: ExperienceMap) -> bool:
     """Whether the robot looks for the rest of its map: another submap, no smaller than `SEARCH_SHARE` of its own."""
-    if not p.search:
-        return False
     sizes = np.bincount(experiences.submap_of)
     own = int(experiences.submap_of[experiences.active])
     return bool(np.delete(sizes, own).max(initial=0) > SEARCH_SHARE * sizes[own])
@@ -245,6 +217,7 @@ def _in_the_middle(aim: _Point, ranges_m: NDArray[np.float32]) -> _Point:
     return aim[0] * share, aim[1] * share + max(-MIDDLE_M, min(MIDDLE_M, aside))
 
 
+FAR_M = 2.8  # experiences of a road are about so far apart, and the robot is on it when it is as near
 LOOP_M = 30.0  # known ground at least this far by the links closes a loop, if it is near: `loop_share` of that way ...
 LOOP_MOST_M = 150.0  # ... of which no more counts than this
 LOOP_DRIVE_M = 25.0  # it is followed for this far, so that it is recognised

@@ -18,7 +18,6 @@ DT = 0.1
 
 
 USUAL, NEAR = PilotParams(), PilotParams(clearance=0.2)
-OUTWARD = {"far_openings": True, "loop_share": 0.1}  # it seeks far openings first, and loops to close
 
 
 ANGLES = np.array(SONAR_ANGLES_RAD)

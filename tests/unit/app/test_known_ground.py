@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from app.pilot.known_ground import (
-    FAR_M,
     OLD_AFTER_S,
     OPENING_AGAIN_S,
     OPENING_MOST_M,
@@ -16,13 +15,10 @@ from app.pilot.known_ground import (
     THIN_M,
     KnownGround,
 )
-from app.pilot.params import PilotParams
 from ratslam_core import Pose2
 
-from .pilots import ANGLES, DT, FAR, OUTWARD
+from .pilots import ANGLES, DT, FAR
 from .worlds import HandMadeMap
-
-USUAL = PilotParams(**OUTWARD)
 
 NEAR = np.full(8, 1.0, np.float32)
 OPEN_LEFT = np.array([4.0, *NEAR[1:]], np.float32)  # a corridor of which one side is open
@@ -85,15 +81,6 @@ def test_what_lies_on_another_submap_hides_no_opening() -> None:
     rows, _ = openings(ground, map_)
     assert len(rows)
     assert (rows >= 30).all()
-
-
-def test_a_far_opening_is_far_from_all_that_is_known() -> None:
-    """Driven along a wall of a hall: what the sonar to the left saw of the hall is far, what it saw of a corridor is not."""
-    for reach, is_far in ((5.0, True), (3.0, False)):
-        ground, map_ = driven(along(60), np.array([reach, *NEAR[1:]], np.float32))
-        rows, places = ground.far_openings(map_)  # type: ignore[arg-type]
-        assert bool(len(rows)) == is_far
-        assert (places[:, 1] > FAR_M).all()
 
 
 def test_what_was_driven_on_is_no_opening() -> None:

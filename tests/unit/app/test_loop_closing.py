@@ -6,15 +6,14 @@ import math
 
 import numpy as np
 
-from app.pilot.known_ground import FAR_M
 from app.pilot.params import PilotParams
-from app.pilot.seeking import LOOP_AGAIN_S, MIDDLE_M, LoopCloser
+from app.pilot.seeking import FAR_M, LOOP_AGAIN_S, MIDDLE_M, LoopCloser
 from ratslam_core import Pose2
 
-from .pilots import ANGLES, FAR, OUTWARD
+from .pilots import ANGLES, FAR
 from .worlds import HandMadeMap, chain
 
-USUAL = PilotParams(**OUTWARD)
+USUAL = PilotParams()
 
 
 class Unrecognised(HandMadeMap):

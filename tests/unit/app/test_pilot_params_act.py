@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import fields, replace
+from dataclasses import fields
 from functools import cache
 
 import numpy as np
@@ -18,7 +18,7 @@ from app.pilot.seeking import LoopCloser
 from ratslam_core import Odometry, Pose2
 from sim2d import Simulator, World
 
-from .pilots import ANGLES, DT, FAR, OUTWARD, STILL, Run, follow
+from .pilots import ANGLES, DT, FAR, STILL, Run, follow
 from .test_loop_closing import almost_round
 from .worlds import EXACT, HandMadeMap, chain, room
 
@@ -81,11 +81,9 @@ def failing_again(p: PilotParams) -> Trace:
         yield None if delays is None else delays.tolist()
 
 
-def on_trips(p: PilotParams, landed: int = 10**9, slower: float = 1.0) -> Trace:
+def on_trips(p: PilotParams) -> Trace:
     """In a room with a map of two of its walls, from which the sonars saw far, after a long time."""
     map_ = HandMadeMap(*chain((1.0, 1.0), (1.0, 7.0), (7.0, 7.0)))
-    map_.landed = landed
-    map_.link_times *= slower
     world = room(side=8.0, start=(7.0, 7.0, 0.0))
     for new_m in (5.0, 20.0, 50.0):
         run = a_run(p, world, map_)
@@ -98,21 +96,6 @@ def on_trips(p: PilotParams, landed: int = 10**9, slower: float = 1.0) -> Trace:
         for _ in range(700):
             run.tick()
             yield run.truth
-
-
-def on_near_trips(p: PilotParams) -> Trace:
-    """The same, where nothing is far."""
-    yield from on_trips(replace(p, far_openings=False, loop_share=0.0))
-
-
-def in_a_large_map(p: PilotParams) -> Trace:
-    """The same, where openings are not all that there is to seek, either."""
-    yield from on_trips(replace(p, far_openings=False, loop_share=0.0), slower=2.0)
-
-
-def on_a_submap(p: PilotParams) -> Trace:
-    """The same, where it was carried to the second wall, and another submap is smaller than its own."""
-    yield from on_trips(replace(p, far_openings=False, loop_share=0.0), landed=20)
 
 
 def along_a_corridor(p: PilotParams) -> Trace:
@@ -156,17 +139,14 @@ OTHER: dict[Callable[[PilotParams], Trace], dict[str, float]] = {
     standing: {"arrival_m": 0.6, "approach_m": 3.0},
     failing_again: {"bar_fade_s": 5.0},
     getting_nowhere: {"stuck_s": 3.0},
-    on_trips: {"seek_after_s": 20.0, "return_after_m": 10.0, "far_openings": False, "home_share": 0.0},
-    on_near_trips: {"return_sigma_m": 0.3},
-    in_a_large_map: {"openings_every": 1},
-    on_a_submap: {"seek": False, "search": False},
+    on_trips: {"seek": False, "return_sigma_m": 0.3},
     along_a_corridor: {"far_look_back_m": 2.0},
     at_a_loop: {"loop_share": 0.0},
 }
 
 
 def usual(**changes: float) -> PilotParams:
-    return PilotParams(**({"look_back_after_m": 4.0, "cross_after_s": 6.0, "seek_after_s": 8.0, **OUTWARD} | changes))
+    return PilotParams(**({"look_back_after_m": 4.0, "cross_after_s": 6.0} | changes))
 
 
 @cache
