@@ -113,6 +113,23 @@ def loops_closed(ends: NDArray[np.int64], births: Births, path: NDArray[np.float
     return int(np.linalg.matrix_rank(np.unique(np.stack(turns, axis=1), axis=0)))
 
 
+ROUND_M, ROUND_S = 1.0, 30.0  # a way comes round where it has been this near, so long before
+
+
+def loops_gone_round(path: NDArray[np.float64], islands: NDArray[np.float64], tick_s: float) -> int:
+    """How many independent loops of the floor the robot's way went round: what `loops_closed` would be if it had known
+    every place again to which it came a second time. path: (ticks, 2); islands: (k, 2)."""
+    if len(islands) == 0 or len(path) == 0:
+        return 0
+    ticks = np.arange(0, len(path), max(1, round(1.0 / tick_s)))  # one a second
+    cells = np.floor(path[ticks] / ROUND_M).astype(np.int64)
+    _, first, which = np.unique(cells, axis=0, return_index=True, return_inverse=True)
+    pairs = np.stack([ticks[first[which.ravel()]], ticks], axis=1)
+    pairs = pairs[(pairs[:, 1] - pairs[:, 0]) * tick_s > ROUND_S]
+    turns = [_turns(path - island, pairs) for island in islands]
+    return int(np.linalg.matrix_rank(np.unique(np.stack(turns, axis=1), axis=0))) if len(pairs) else 0
+
+
 def _turns(path: NDArray[np.float64], ticks: NDArray[np.int64]) -> NDArray[np.float64]:
     """How often the path winds round (0, 0) from the first to the second tick of each pair, and straight back; (m,)."""
     angle: NDArray[np.float64] = np.unwrap(np.arctan2(path[:, 1], path[:, 0]))

@@ -20,6 +20,8 @@ OPENING_GAP_M, OPENING_MOST_M = 0.7, 2.5  # ... whose place is so much before th
 OPENING_BEAMS = 3  # must have seen an opening
 OPENING_AGAIN_S = 120.0  # one that has been tried is tried again after this time, after twice as long the next time
 THIN_M = 0.8  # the map is thin where no experience is about this near
+BEYOND_M = (1.7, 3.3, 4.1)  # so far along a beam it is looked whether that ground is new, too ...
+ABOUT = 2  # ... which counts for places within so many times THIN_M
 
 _Array = NDArray[np.float64]
 
@@ -90,25 +92,26 @@ class KnownGround:
         before = np.hypot(*(placed([done[:3] for done in self._done], poses) - here).T) < THIN_M
         self._done.append((experience, x, y, self.now_s + OPENING_AGAIN_S * 2.0 ** int(before.sum())))
 
-    def openings(self, experiences: ExperienceMap, least: int) -> tuple[NDArray[np.int64], _Array]:
-        """Experiences (k,) and the places (k, 2), m, map frame, that were seen from there and never driven on.
+    def openings(self, experiences: ExperienceMap, least: int) -> tuple[NDArray[np.int64], _Array, _Array]:
+        """Experiences (k,), the places (k, 2), m, map frame, that were seen from there and never driven on, and how much
+        new ground lies about each, (k,), m².
 
-        least: so many beams must have seen an opening; a single one may be a false echo. Only what lies on the robot's own
+        least: so many beams must have seen a place; a single one may be a false echo. Only what lies on the robot's own
         submap counts: where the others lie to it is unknown.
         """
         poses, submaps = experiences.poses[: self.count], experiences.submap_of[: self.count]
         own = submaps == submaps[experiences.active]
         rows, beams = np.nonzero((self._seen_m[: self.count] >= OPENING_M) & own[:, None])
-        away = np.minimum(self._seen_m[rows, beams] - OPENING_GAP_M, OPENING_MOST_M)
-        done = [tried[:3] for tried in self._done if own[tried[0]] and tried[3] > self.now_s]
+        free_m = self._seen_m[rows, beams].astype(np.float64) - OPENING_GAP_M
         heading = poses[rows, 2] + self._angles[beams]
-        places = poses[rows, :2] + away[:, None] * np.stack([np.cos(heading), np.sin(heading)], axis=1)
-        thin = _far_from(places, np.concatenate([poses[own, :2], placed(done, poses)]), THIN_M)
-        rows, places = rows[thin], places[thin]
-        cells = np.floor(places / THIN_M).astype(np.int64)
-        _, which, count = np.unique(cells, axis=0, return_inverse=True, return_counts=True)
-        often = count[which.ravel()] >= least
-        return rows[often].astype(np.int64), places[often]
+        way = np.stack([np.cos(heading), np.sin(heading)], axis=1)
+        places = poses[rows, :2] + np.minimum(free_m, OPENING_MOST_M)[:, None] * way
+        beyond = [poses[rows[far], :2] + metres * way[far] for metres in BEYOND_M for far in [free_m >= metres]]
+        done = [tried[:3] for tried in self._done if own[tried[0]] and tried[3] > self.now_s]
+        known = np.concatenate([poses[own, :2], placed(done, poses)])
+        often, area = _new_ground(np.concatenate([places, *beyond]), known, least)
+        often, area = often[: len(places)], area[: len(places)]
+        return rows[often].astype(np.int64), places[often], area[often]
 
 
 def placed(points: list[tuple[int, float, float]], poses: _Array) -> _Array:
@@ -121,18 +124,31 @@ def placed(points: list[tuple[int, float, float]], poses: _Array) -> _Array:
     return np.stack([x + c * rows[:, 1] - s * rows[:, 2], y + s * rows[:, 1] + c * rows[:, 2]], axis=1)
 
 
-def _far_from(places: _Array, others: _Array, reach: float) -> NDArray[np.bool_]:
-    """Which of the places (k, 2) are farther than about `reach` (1 to 2 times) from all others (n, 2)."""
+def _new_ground(places: _Array, known: _Array, least: int) -> tuple[NDArray[np.bool_], _Array]:
+    """Which of the places (k, 2) lie farther than THIN_M (to twice that) from all known ones (n, 2), where at least so many
+    do; and how much of such ground, m², lies within `ABOUT` cells of each."""
     if not len(places):
-        return np.zeros(0, np.bool_)
-    low = np.minimum(places.min(axis=0), others.min(axis=0)) - 2 * reach
-    high = np.maximum(places.max(axis=0), others.max(axis=0)) + 2 * reach
-    size = np.ceil((high - low) / reach).astype(np.int64)
-    at = np.floor((others - low) / reach).astype(np.int64)
-    known = np.zeros((int(size[0]), int(size[1])), np.bool_)
-    known[at[:, 0], at[:, 1]] = True
+        return np.zeros(0, np.bool_), np.zeros(0)
+    both = np.concatenate([places, known])
+    low = both.min(axis=0) - (ABOUT + 1) * THIN_M
+    size = np.ceil((both.max(axis=0) - low) / THIN_M).astype(np.int64) + ABOUT + 1
+    old, seen = np.zeros(size, np.bool_), np.zeros(size, np.int64)
+    cells = np.floor((both - low) / THIN_M).astype(np.int64)
+    mine, theirs = tuple(cells[: len(places)].T), tuple(cells[len(places) :].T)
+    old[theirs] = True
+    np.add.at(seen, mine, 1)
+    new = ~_spread(old, 1) & (seen >= least)
+    area = THIN_M**2 * _summed(new.astype(np.float64), ABOUT)
+    return new[mine], area[mine]
+
+
+def _spread(marked: NDArray[np.bool_], cells: int) -> NDArray[np.bool_]:
     for axis in (0, 1):
-        known = np.logical_or.reduce([np.roll(known, shift, axis) for shift in (-1, 0, 1)])
-    mine = np.floor((places - low) / reach).astype(np.int64)
-    free: NDArray[np.bool_] = ~known[mine[:, 0], mine[:, 1]]
-    return free
+        marked = np.logical_or.reduce([np.roll(marked, shift, axis) for shift in range(-cells, cells + 1)])
+    return marked
+
+
+def _summed(values: _Array, cells: int) -> _Array:
+    for axis in (0, 1):
+        values = np.sum([np.roll(values, shift, axis) for shift in range(-cells, cells + 1)], axis=0)
+    return values

@@ -34,6 +34,7 @@ LONG_AGO_S = 120.0  # places visited more lately than this are not sought again
 SEARCH_SHARE = 0.1  # the rest of its map is looked for while another submap is larger than this share of its own ...
 SEARCH_HOME = 2.0  # ... metres of the way there that a metre from where its submap began to an opening counts as ...
 SEARCH_BEAMS = 1  # ... and an opening is what so many beams have seen
+BEGIN_S = 10.0  # added to the time of each way: small ground near by is not worth a start
 INTO_S, INTO_REACH_M = 25.0, 0.4  # driving into an opening ends after this time, or this near to its place ...
 INTO_FREE_M = 0.2  # ... or when less than this is free towards it
 
@@ -151,7 +152,7 @@ class Seeker:
             goal, self._into_s = self._closer.road[0], 0.0
             self.reason = f"to close a loop: {times[goal]:.0f} s away by the links"
         if goal is None:
-            goal = self._nearest_opening(experiences, local, times, p, SEARCH_BEAMS if searching else OPENING_BEAMS)
+            goal = self._best_opening(experiences, local, times, p, SEARCH_BEAMS if searching else OPENING_BEAMS)
         if goal is None and self._wander_s > WANDER_S and not searching:
             goal = self._long_ago(times)
         if goal is not None:
@@ -162,13 +163,13 @@ class Seeker:
         old = old[self.ground.last_s[old] - self.ground.made_s[old] > OLD_AFTER_S] if len(old) else old
         return int(old[np.argmin(times[old])]) if len(old) else None
 
-    def _nearest_opening(
+    def _best_opening(
         self, experiences: ExperienceMap, local: LocalMovement, times: NDArray[np.float64], p: PilotParams, least: int
     ) -> int | None:
-        """The one that is reached soonest: over the links to where it was seen from, or straight if that is near by."""
-        rows, places = self.ground.openings(experiences, least)
+        """The one with the most new ground for the time: over the links to where it was seen from, or straight if near."""
+        rows, places, area = self.ground.openings(experiences, least)
         reached = np.isfinite(times[rows])
-        rows, places = rows[reached], places[reached]
+        rows, places, area = rows[reached], places[reached], area[reached]
         if not len(rows):
             return None
         poses, robot = experiences.poses, experiences.robot
@@ -180,7 +181,7 @@ class Seeker:
         if _searching(experiences):
             x, y = poses[np.argmax(experiences.submap_of == experiences.submap_of[experiences.active]), :2]
             cost = cost + SEARCH_HOME * np.hypot(places[:, 0] - x, places[:, 1] - y) / p.cruise_speed
-        best = int(np.argmin(cost))
+        best = int(np.argmax(area / (cost + BEGIN_S)))
         if near[best] and local.free_way(float(bearing[best]), p) > INTO_FREE_M:
             self._into_s = 0.0  # it sees it from here
         away = math.hypot(places[best, 0] - robot.x, places[best, 1] - robot.y)

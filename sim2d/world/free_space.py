@@ -157,6 +157,14 @@ class FreeSpace:
         """How many cells can be reached."""
         return int(np.count_nonzero(self._reachable))
 
+    def coarse(self, cell_m: float) -> NDArray[np.bool_]:
+        """(n_y, n_x): larger cells, about so wide, of which more than half can be reached."""
+        n = max(1, round(cell_m / self._cell))
+        rows, columns = (size // n for size in self._reachable.shape)
+        parts = self._reachable[: rows * n, : columns * n].reshape(rows, n, columns, n)
+        most: NDArray[np.bool_] = parts.mean(axis=(1, 3)) > 0.5
+        return most
+
     def islands(self, least_m2: float) -> NDArray[np.float64]:
         """A point in each part of the world that this floor surrounds and that is no smaller than this, (n, 2).
 
