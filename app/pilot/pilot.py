@@ -83,6 +83,11 @@ class Pilot:
         asked = self._local.asked
         return None if asked is None else asked[1:3]
 
+    def trip(self, experiences: ExperienceMap) -> tuple[tuple[float, float], str, NDArray[np.float64]] | None:
+        """While it explores on purpose: where to, m, map frame; why, in words; and all openings (k, 2) that it knew of."""
+        target = self._seeker.target(experiences) if self.mode == "explore" else None
+        return None if target is None else (target, self._seeker.reason, self._seeker.openings)
+
     def progress(self, experiences: ExperienceMap) -> Progress | None:
         return self._follower.progress(experiences) if self._follower else None
 

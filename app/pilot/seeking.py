@@ -50,6 +50,7 @@ class Seeker:
         self.follower: RouteFollower | None = None
         self.returning = False
         self.reason = ""  # of the trip, in words; "" while it wanders
+        self.openings = np.zeros((0, 2))  # (k, 2) m, map frame: all that it knew of when it chose
         self._bars = bars
         self._opening: Pose2 | None = None  # what to drive into at the end of the trip, in the frame of its experience
         self._closer = LoopCloser(sonar_angles_rad)
@@ -72,6 +73,14 @@ class Seeker:
     def rests(self) -> bool:
         """Whether to stop it would change nothing."""
         return self.follower is None and self._wander_s == self._wait_s == 0.0 and self._closer.rests
+
+    def target(self, experiences: ExperienceMap) -> _Point | None:
+        """Where the trip leads, m, map frame; None while it wanders."""
+        if self.follower is None:
+            return None
+        place = experiences.pose(self.follower.goal)
+        place = place if self._opening is None else place.compose(self._opening)
+        return place.x, place.y
 
     def stop(self) -> None:
         """Something else is wanted of the robot."""
@@ -168,6 +177,7 @@ class Seeker:
     ) -> int | None:
         """The one with the most new ground for the time: over the links to where it was seen from, or straight if near."""
         rows, places, area = self.ground.openings(experiences, least)
+        self.openings = places
         reached = np.isfinite(times[rows])
         rows, places, area = rows[reached], places[reached], area[reached]
         if not len(rows):

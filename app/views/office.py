@@ -17,7 +17,7 @@ from disk import encode
 from ratslam_core import Pose2
 from ratslam_core.pose_graph.transitions import moved_by
 from sim2d import SONAR_ANGLES_RAD, Simulator, World, draw_world
-from web.messages import Ghost, Goal, KnownPlace, LivingLayer, Movements, Pose, TaggedPlace, WorldDrawing
+from web.messages import Ghost, Goal, KnownPlace, LivingLayer, Movements, Pose, TaggedPlace, Trip, WorldDrawing
 
 
 class DrawnWorld:
@@ -212,6 +212,14 @@ def goal_view(session: Session) -> Goal | None:
         frozen(experiences.poses[list(session.pilot.goals), :2].astype(np.float32)),
         is_lost(session), session.pilot.mode == "goal", why_no_route(session),
     )  # fmt: skip
+
+
+def trip_view(session: Session) -> Trip | None:
+    found = session.pilot.trip(session.brain.experience_map) if session.source.driven else None
+    if found is None:
+        return None
+    (x, y), reason, openings = found
+    return Trip(x, y, reason, frozen(openings.astype(np.float32)))
 
 
 def tags_view(session: Session) -> tuple[TaggedPlace, ...]:

@@ -17,7 +17,17 @@ from app.views.beside import BesideDrawn
 from app.views.history import History, Trails
 from app.views.inspection import inspect
 from app.views.map_layers import MapLayers, goal_memory_layer, occupancy_layer, pose_cell_layer
-from app.views.office import ActorsView, DrawnWorld, ghost_of, goal_view, known_places, movements_of, shown, tags_view
+from app.views.office import (
+    ActorsView,
+    DrawnWorld,
+    ghost_of,
+    goal_view,
+    known_places,
+    movements_of,
+    shown,
+    tags_view,
+    trip_view,
+)
 from app.views.tick_stages import Walk
 from ratslam_core import Pose2
 from ratslam_core.params.additions import ADDITIONS
@@ -131,6 +141,7 @@ class Snapshots:
             map=parts["map"],
             times=parts["times"],
             goal=goal_view(session),
+            trip=trip_view(session),
             tags=tags_view(session),
             belief=belief_of(session),
             views=len(brain.local_view),

@@ -160,6 +160,9 @@ def page_fields(snapshot: Snapshot) -> dict[str, Any]:
     return {
         "run": snapshot.run,
         "doing": snapshot.doing,
+        "trip": None
+        if snapshot.trip is None
+        else {"x": snapshot.trip.x, "y": snapshot.trip.y, "reason": snapshot.trip.reason},
         "status": _status(snapshot),
         "fault": snapshot.fault,
         "real_time_factor": snapshot.real_time_factor,

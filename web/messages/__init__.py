@@ -29,6 +29,7 @@ from web.messages.brain import (
     TickWalk,
     TimesLayer,
     Timing,
+    Trip,
 )
 from web.messages.commands import (
     BackToNow,
@@ -289,6 +290,7 @@ __all__ = [
     "Timing",
     "TrialState",
     "TrialView",
+    "Trip",
     "UndoEdit",
     "Untag",
     "UntilState",

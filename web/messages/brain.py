@@ -220,6 +220,16 @@ class Goal:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class Trip:
+    """[ours] Where the robot explores, and why. Map frame."""
+
+    x: float
+    y: float
+    reason: str
+    openings_xy: NDArray[np.float32]  # (k, 2) open floor that it saw and never drove on
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class Ghost:
     """The robot as it would be if it believed its wheels alone, in the frame of where the run began."""
 

@@ -34,6 +34,7 @@ from web.messages.brain import (
     TickWalk,
     TimesLayer,
     Timing,
+    Trip,
 )
 from web.messages.reports import Report
 from web.messages.situation import SituationView
@@ -401,6 +402,7 @@ class Snapshot:
     trial: TrialView | None = None  # None: no trial of an experiment was begun in this run
     lesson: LessonView | None = None  # None: no lesson was begun in this run
     until: UntilView | None = None  # None: nothing is or was waited for
+    trip: Trip | None = None  # while the robot explores on purpose
     tags: tuple[TaggedPlace, ...] = ()  # in the order in which they were given
     situation: SituationView | None = None  # None: the run is no situation that was opened
     time: TimeView | None = None  # None: nothing of this run can be gone back to

@@ -34,7 +34,7 @@ from web.viewer.primitives.palette import Palette, mix
 from web.viewer.replay import Replay
 from web.viewer.scenery import Beside, Scenery
 
-ON_MAP = "times", "estimate", "others", "goal", "tags", "places", "closures"  # layers that move with it
+ON_MAP = "times", "estimate", "others", "goal", "trip", "tags", "places", "closures"  # layers that move with it
 
 
 class Layers:
@@ -66,6 +66,7 @@ class Layers:
             "estimate": Throttle(15, map_plate.set_robot),
             "others": Throttle(6, map_plate.set_others),
             "goal": Throttle(3, map_plate.set_goal),
+            "trip": Throttle(2, map_plate.set_trip),
             "tags": Throttle(2, map_plate.set_tags),
             "names": Throttle(2, office.set_places),
             "places": Throttle(2, map_plate.set_places),
@@ -137,6 +138,7 @@ class Layers:
         offer["estimate"].offer(now_s, snapshot.estimate)
         offer["others"].offer(now_s, snapshot.belief.others if snapshot.belief else ())
         offer["goal"].offer(now_s, snapshot.goal)
+        offer["trip"].offer(now_s, snapshot.trip)
         offer["tags"].offer(now_s, snapshot.tags)
         offer["places"].offer(now_s, snapshot.places)
         offer["closures"].offer(now_s, judged(snapshot, self._switches.on).closures, snapshot.map, snapshot)

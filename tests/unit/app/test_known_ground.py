@@ -40,7 +40,10 @@ def driven(places: Places, ranges: np.ndarray = OPEN_LEFT) -> tuple[KnownGround,
 
 
 def openings(ground: KnownGround, map_: HandMadeMap) -> tuple[np.ndarray, np.ndarray]:
-    return ground.openings(map_, 3)  # type: ignore[arg-type]
+    rows, places, area = ground.openings(map_, 3)  # type: ignore[arg-type]
+    assert len(rows) == len(places) == len(area)
+    assert (area > 0).all()
+    return rows, places
 
 
 def test_open_floor_that_was_never_driven_on_is_an_opening() -> None:
@@ -56,6 +59,14 @@ def test_open_floor_that_was_never_driven_on_is_an_opening() -> None:
         _, left = openings(ground, map_)
         assert 0 < len(left) < len(places)
         assert np.hypot(left[:, 0] - 1.5 - x, left[:, 1] - OPENING_MOST_M - y).min() > THIN_M
+
+
+def test_how_much_new_ground_lies_about_an_opening_is_known() -> None:
+    """A hall that was seen along 6 m, and a niche along half a metre."""
+    ground, map_ = driven(along(80))
+    ground._seen_m[60:75, 0] = 1.0
+    rows, _, area = ground.openings(map_, 3)  # type: ignore[arg-type]
+    assert area[rows == 30].min() > 2 * area[rows >= 75].max()
 
 
 def test_an_opening_is_tried_again_later() -> None:

@@ -118,6 +118,15 @@ def test_while_there_is_an_opening_it_does_not_wander() -> None:
     assert run.doing["going where the map is thin"] > 350
 
 
+def test_of_two_openings_the_one_with_more_new_ground_for_the_way_is_taken() -> None:
+    """The niche is nearer, the hall is worth the way; of two halls the nearer one."""
+    for far, expected in ((range(4, 16), range(4, 16)), (range(4, 7), range(19, 22))):
+        run = a_run(one_side(), start=(1.0, 6.5), **NO_LOOPS)
+        ground_of(run, (slice(far.start, far.stop), AHEAD, 5.0), (slice(19, 22), AHEAD, 5.0))
+        assert chosen(run) in expected
+        assert run.pilot._seeker.reason.startswith("new ground, ")
+
+
 def test_where_odometry_may_be_far_off_it_goes_back() -> None:
     map_ = two_sides()
     for most_m, new_m in ((1.0, 101.0), (100.0, 101.0), (100.0, 99.0)):

@@ -20,6 +20,7 @@ from web.messages import (
     Snapshot,
     TaggedPlace,
     TimesLayer,
+    Trip,
 )
 from web.messages.robot_status import goal_status, seconds_words
 from web.viewer.camera_views import MAP_AT, SHEET
@@ -76,6 +77,8 @@ class MapPlate(Plate):
         self._others = Hypotheses(scene, palette, f"{self.root}/other", self.labels)
         self._route = Route(scene, palette, f"{self.root}/route", self.labels)
         self._flag = GoalFlag(scene, palette, f"{self.root}/flag", self.labels)
+        self._trip = TagMarks(scene, palette, f"{self.root}/trip", self.labels)
+        self._openings = Nodes(scene, f"{self.root}/openings", 0.05)
         self._tags = TagMarks(scene, palette, f"{self.root}/tags", self.labels)
         self.names = PlaceNames(scene, palette, f"{self.root}/name", self.labels)
         self.closures = ClosureMarks(scene, palette, f"{self.root}/closure", self.labels)
@@ -183,6 +186,14 @@ class MapPlate(Plate):
         at = self.fit.to_plate(np.array([[goal.x, goal.y]]))[0]
         self._flag.show(at, promise(goal), meshes.stepped(self.fit.to_plate(goal.places_xy)))
         self._route.show(self.fit.to_plate(goal.route_xy), goal.route_arrival_s, at)
+
+    def set_trip(self, trip: Trip | None) -> None:
+        """Shows where the robot explores, and why, and what else it might have chosen."""
+        openings = np.zeros((0, 2), np.float32) if trip is None else trip.openings_xy
+        at = np.array([] if trip is None else [(trip.x, trip.y)]).reshape(-1, 2)
+        self._openings.place(meshes.lifted(meshes.stepped(self.fit.to_plate(openings)), NODE_Z))
+        self._openings.paint(np.tile(np.array(self.palette.unknown, np.uint8), (len(openings), 1)))
+        self._trip.show([] if trip is None else [trip.reason], meshes.stepped(self.fit.to_plate(at)))
 
     def set_tags(self, tags: tuple[TaggedPlace, ...]) -> None:
         places = self.fit.to_plate(np.array([(tag.x, tag.y) for tag in tags]).reshape(-1, 2))

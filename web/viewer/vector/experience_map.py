@@ -55,6 +55,7 @@ def draw_map(subject: Subject) -> str:
         sheet.label(((low + high) / 2).tolist(), NO_MAP, palette.text_2)
     sheet.avoid(here.tolist(), ROBOT)
     _draw_goal(sheet, subject, fit)
+    legend += _draw_trip(sheet, subject, fit)
     legend += layers.draw_spread(sheet, subject, fit)
     legend += mark_on_map(sheet, subject, fit, places)
     _draw_names(sheet, subject, fit)
@@ -87,6 +88,17 @@ def _draw_goal(sheet: Sheet, subject: Subject, fit: MapFit) -> None:
     if len(route) > 1:
         for seconds, x, y in pill_stops(route, np.asarray(goal.route_arrival_s, np.float64), at):
             sheet.label((x, y), f"{seconds:.0f} s", palette.casing, size=12, fill=palette.route)
+
+
+def _draw_trip(sheet: Sheet, subject: Subject, fit: MapFit) -> list[Entry]:
+    """Where the robot explores, and why, and what else it might have chosen."""
+    trip, palette = subject.snapshot.trip, subject.palette
+    if trip is None:
+        return []
+    for place in fit.to_plate(trip.openings_xy).tolist():
+        sheet.dot(place, DOT, palette.unknown)
+    draw_pin(sheet, subject, fit.to_plate(np.array([[trip.x, trip.y]]))[0].tolist(), trip.reason)
+    return [("area", palette.unknown, "open floor, not yet driven on")] if len(trip.openings_xy) else []
 
 
 def _draw_names(sheet: Sheet, subject: Subject, fit: MapFit) -> None:

@@ -58,5 +58,6 @@ def snapshot_of_second(snapshot: Snapshot, beside: BesideView) -> Snapshot:
     """The moment, with the second brain in place of the first."""
     return replace(
         snapshot, pose_cells=beside.pose_cells, map=beside.map, times=beside.times, estimate=beside.estimate,
-        goal=beside.goal, map_turn_rad=beside.map_turn_rad, map_in_office=None, places=(), tags=(), lesson=None, inspected=None,
+        goal=beside.goal, map_turn_rad=beside.map_turn_rad, map_in_office=None, places=(), trip=None, tags=(), lesson=None,
+        inspected=None,
     )  # fmt: skip
