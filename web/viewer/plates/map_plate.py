@@ -29,6 +29,7 @@ from web.viewer.marks.graph import ClosureMarks, Links, Nodes
 from web.viewer.marks.hypotheses import Hypotheses
 from web.viewer.marks.inspected import MapMark
 from web.viewer.marks.names import PlaceNames, TagMarks
+from web.viewer.marks.robot import pale
 from web.viewer.marks.route import GoalFlag, Route
 from web.viewer.plates.overlays import map_floor
 from web.viewer.plates.plate import FLOOR_Z, TEXT_Z, Plate
@@ -191,8 +192,10 @@ class MapPlate(Plate):
         """Shows where the robot explores, and why, and what else it might have chosen."""
         openings = np.zeros((0, 2), np.float32) if trip is None else trip.openings_xy
         at = np.array([] if trip is None else [(trip.x, trip.y)]).reshape(-1, 2)
-        self._openings.place(meshes.lifted(meshes.stepped(self.fit.to_plate(openings)), NODE_Z))
-        self._openings.paint(np.tile(np.array(self.palette.unknown, np.uint8), (len(openings), 1)))
+        places = meshes.stepped(self.fit.to_plate(openings))
+        places = places[(np.abs(places) <= (WIDTH / 2, DEPTH / 2)).all(axis=1)]
+        self._openings.place(meshes.lifted(places, NODE_Z))
+        self._openings.paint(np.tile(np.array(pale(self.palette, self.palette.goal), np.uint8), (len(places), 1)))
         self._trip.show([] if trip is None else [trip.reason], meshes.stepped(self.fit.to_plate(at)))
 
     def set_tags(self, tags: tuple[TaggedPlace, ...]) -> None:

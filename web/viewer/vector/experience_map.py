@@ -12,6 +12,7 @@ from web.messages import Pose
 from web.messages.robot_status import seconds_words, share_words
 from web.viewer.fits import DEPTH, WIDTH, MapFit, on_plate, refit, wheels_alone, wheels_path
 from web.viewer.marks.names import MOST
+from web.viewer.marks.robot import pale
 from web.viewer.marks.route import pill_stops
 from web.viewer.plates.map_plate import NO_MAP, grid_step_m, promise, round_up
 from web.viewer.vector import layers
@@ -50,7 +51,7 @@ def draw_map(subject: Subject) -> str:
     for place, colour in zip(places.tolist(), palette.times(seconds, longest).tolist(), strict=False):
         sheet.dot(place, DOT, tuple(colour))
     if not np.isfinite(seconds).all():
-        legend.append(("area", palette.unknown, "no way there is known"))
+        legend.append(("area", palette.unknown, "no known route there"))
     if not len(places):
         sheet.label(((low + high) / 2).tolist(), NO_MAP, palette.text_2)
     sheet.avoid(here.tolist(), ROBOT)
@@ -96,9 +97,9 @@ def _draw_trip(sheet: Sheet, subject: Subject, fit: MapFit) -> list[Entry]:
     if trip is None:
         return []
     for place in fit.to_plate(trip.openings_xy).tolist():
-        sheet.dot(place, DOT, palette.unknown)
+        sheet.dot(place, DOT, pale(palette, palette.goal))
     draw_pin(sheet, subject, fit.to_plate(np.array([[trip.x, trip.y]]))[0].tolist(), trip.reason)
-    return [("area", palette.unknown, "open floor, not yet driven on")] if len(trip.openings_xy) else []
+    return [("ring", pale(palette, palette.goal), "open floor, not yet driven on")] if len(trip.openings_xy) else []
 
 
 def _draw_names(sheet: Sheet, subject: Subject, fit: MapFit) -> None:
