@@ -260,6 +260,7 @@ def _seeker(seeker: Seeker, experiences: int) -> None:
         within("an opening", np.array(place, np.float64), -FAR_M, FAR_M)
     if seeker.follower is not None:
         _follower(seeker.follower, experiences)
+    true(isinstance(seeker.explored, bool), "whether all is explored must be a truth value")
     true(isinstance(seeker.reason, str), "the reason of a trip must be words")
     within("openings", array("openings", seeker.openings, np.float64, (None, 2)), -FAR_M, FAR_M)
 

@@ -83,6 +83,11 @@ class Pilot:
         asked = self._local.asked
         return None if asked is None else asked[1:3]
 
+    @property
+    def explored(self) -> bool:
+        """Whether, as far as it knows, there is nothing new to drive to."""
+        return self.mode == "explore" and self._seeker.explored
+
     def trip(self, experiences: ExperienceMap) -> tuple[tuple[float, float], str, NDArray[np.float64]] | None:
         """While it explores on purpose: where to, m, map frame; why, in words; and all openings (k, 2) that it knew of."""
         target = self._seeker.target(experiences) if self.mode == "explore" else None

@@ -49,6 +49,7 @@ class Seeker:
         self.ground = KnownGround(sonar_angles_rad)
         self.follower: RouteFollower | None = None
         self.returning = False
+        self.explored = False  # nothing new is in sight, and has not been for a while
         self.reason = ""  # of the trip, in words; "" while it wanders
         self.openings = np.zeros((0, 2))  # (k, 2) m, map frame: all that it knew of when it chose
         self._bars = bars
@@ -162,7 +163,8 @@ class Seeker:
             self.reason = f"to close a loop: {times[goal]:.0f} s away by the links"
         if goal is None:
             goal = self._best_opening(experiences, local, times, p, SEARCH_BEAMS if searching else OPENING_BEAMS)
-        if goal is None and self._wander_s > WANDER_S and not searching:
+        self.explored = goal is None and (self.explored or (self._wander_s > WANDER_S and not searching))
+        if goal is None and self.explored and self._wander_s > WANDER_S:
             goal = self._long_ago(times)
         if goal is not None:
             self.follower = RouteFollower(goal, self._bars)

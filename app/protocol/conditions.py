@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from app.views.history import History
     from web.messages import Event
 
-What = Literal["closure", "snap", "lost", "found again", "packets", "goal reached", "place"]
+What = Literal["closure", "snap", "lost", "found again", "packets", "goal reached", "place", "explored"]
 
 
 class Until(Part):
@@ -46,6 +46,7 @@ class Until(Part):
             "packets": f"{self.count} packets compete",
             "goal reached": "the goal is reached",
             "place": f"the robot comes to {where}",
+            "explored": "everything is explored",
         }[self.what]
 
 
@@ -69,6 +70,8 @@ class Waiting:
             raise ValueError("nobody has carried the robot away, or it has found itself again already: kidnap it first")
         if until.what == "goal reached" and session.pilot.goal_state is None:
             raise ValueError("the robot has no goal: give it one first")
+        if until.what == "explored" and not session.config.pilot.seek:
+            raise ValueError("this robot explores by chance and cannot tell: switch pilot.seek on first")
 
     def met(self) -> bool:
         """[ours] test_run_until.py, test_lessons_in_engine.py."""
@@ -86,6 +89,8 @@ class Waiting:
         if what == "goal reached":
             state = session.pilot.goal_state
             return state is not None and state[1] == "arrived"
+        if what == "explored":
+            return session.pilot.explored
         truth = session.simulator.truth
         assert self._place is not None
         return math.dist((truth.x, truth.y), self._place) <= self.until.within_m

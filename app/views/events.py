@@ -18,6 +18,7 @@ from web.messages import Closure, Event, EventKind, GoalState, Packet, Snap, Why
 from web.messages.robot_status import goal_meaning, odds_words
 
 MOST_EVENTS = 2000
+NOTHING_NEW = "nothing new is in sight; it visits what it has not seen for longest"
 
 
 class EventLog:
@@ -118,7 +119,7 @@ NEW_GROUND, LONG_AGO_S = 20, 30.0  # after so many new experiences, one that was
 DIVERGED_EVERY_S = 60.0  # a map that diverges again and again is marked no more often
 
 
-@kind("event_watch/5")
+@kind("event_watch/6")
 class EventWatch:
     """Call `watch` after each tick."""
 
@@ -138,6 +139,7 @@ class EventWatch:
         self._before = session.brain.pose_cells.winner
         self._goal_state: tuple[int | None, str] = None, ""  # the goal, and what was last true of it
         self._false_marked, self._false_due_s = 0, 0.0
+        self._explored = False
         self._recovered = self._multiple = self._collisions = 0
         self._dropped = len(session.brain.experience_map.dropped_links)
         self._places_due_s = session.time_s + PLACES_EVERY_S
@@ -155,6 +157,7 @@ class EventWatch:
         self._watch_closures()
         self._watch_packets()
         self._watch_goal()
+        self._watch_exploring()
         self._watch_kidnaps()
         self._watch_false_positives()
         self._watch_links()
@@ -242,6 +245,12 @@ class EventWatch:
             self._log.note(
                 "unreachable", f"no route to experience {goal}, {why_no_route(self._session)}: exploring for one"
             )
+
+    def _watch_exploring(self) -> None:
+        """Marks that there is nothing new in sight."""
+        before, self._explored = self._explored, self._session.pilot.explored
+        if self._explored and not before:
+            self._log.note("explored", NOTHING_NEW, NOTHING_NEW)
 
     def _watch_kidnaps(self) -> None:
         kidnaps = self._session.evaluation.kidnaps

@@ -277,7 +277,7 @@ class RunUntil(CommandModel, needs="robot", in_the_past=True, at="what"):
     """
 
     type: Literal["run_until"]
-    what: Literal["closure", "snap", "lost", "found again", "packets", "goal reached", "place"]
+    what: Literal["closure", "snap", "lost", "found again", "packets", "goal reached", "place", "explored"]
     within_s: Annotated[float, Field(gt=0, le=36000)] = 600.0
     count: Annotated[int, Field(ge=2, le=9)] = 2
     place: Label | None = None

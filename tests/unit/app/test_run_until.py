@@ -5,8 +5,10 @@ from __future__ import annotations
 import pytest
 
 from app.engine.engine import Engine
+from app.evaluation.agreement import Coverage
 from app.protocol.conditions import Waiting, read_until
 from app.session import Session
+from app.views.events import NOTHING_NEW
 from app.views.history import History
 
 from .engines import an_engine, tell
@@ -66,6 +68,18 @@ def test_a_packet_put_in_makes_two() -> None:
     tell(engine, type="inject_packet", x=x, y=10, share=0.4)
     assert run_until(engine, "packets", count=2, within_s=5) == ("packets", "met")
     assert engine.run.session.tick_count == 1
+
+
+def test_it_runs_until_everything_is_explored() -> None:
+    """It says so, and goes on by visiting old places; one that explores by chance cannot tell."""
+    engine = an_engine(OFFICE)
+    assert run_until(engine, "explored", within_s=1800) == ("explored", "met")
+    session, events = engine.run.session, engine.run.event_log.events
+    assert Coverage().follow(session.simulator.free_space, session.evaluation.path) > 0.9
+    assert NOTHING_NEW in [event.text for event in events]
+    engine.run.session.set_parameter("pilot.seek", False)
+    with pytest.raises(ValueError, match=r"switch pilot\.seek on"):
+        tell(engine, type="run_until", what="explored")
 
 
 def test_what_cannot_happen_is_refused_in_a_sentence_and_a_pause_breaks_it_off() -> None:

@@ -38,6 +38,7 @@ const KINDS = {
   reached: { name: "reached", weight: 5, d: "M-6-6h12v12h-12zM-3 0l2 3 4-6", open: true },
   failed: { name: "failed", weight: 5, d: "M-6-6h12v12h-12zM-3-3l6 6M3-3l-6 6", open: true },
   closure: { name: "loop closed", weight: 2, d: "M5-3a6 6 0 1 0 0 6M5-3v-4M5-3h-4", open: true },
+  explored: { name: "explored", weight: 4, d: `${circle(6)}M-3 0l2 3 4-6`, open: true },
   branch: { name: "branch", weight: 4, d: "M-4 7V-7M-4 3c0-6 8-3 8-10", open: true },
   recording: { name: "recording", weight: 5, d: "M-6-6v12M0-6v12M6-6v12M-6 0h12", open: true },
   lesson: { name: "lesson", weight: 5, d: "M-7-2l7-4 7 4-7 4zM-4 0v4c2 2 6 2 8 0v-4", open: true },

@@ -184,6 +184,7 @@ export const CHOICES = [
   { words: "it has recovered", wish: { what: "found again" } },
   { words: "the packet snaps", wish: { what: "snap" } },
   { words: "it is at its goal", wish: { what: "goal reached" } },
+  { words: "everything is explored", wish: { what: "explored", within_s: 36000 } },
 ];
 
 /** So many packets can be waited for. */
