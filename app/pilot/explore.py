@@ -55,7 +55,7 @@ class Explorer:
     def __init__(self, rng: np.random.Generator) -> None:
         self._rng = rng
         self._begin_following()
-        self._way = self._far = 0.0  # since it last looked back, m: wandering, and on trips to new ground
+        self._way, self._far = 0.0, math.inf  # since it last looked back, m: wandering; to new ground, first of all
         self._back = 0.0  # what is left to drive back while looking, m
         self._cross_in_s = math.inf  # time of wall following until the next crossing; looking back does not reset it
 

@@ -20,6 +20,7 @@ OPENING_GAP_M, OPENING_MOST_M = 0.7, 2.5  # ... whose place is so much before th
 OPENING_BEAMS = 3  # must have seen an opening
 OPENING_AGAIN_S = 120.0  # one that has been tried is tried again after this time, after twice as long the next time
 THIN_M = 0.8  # the map is thin where no experience is about this near
+UNSEEN_M2 = 5.0  # so much new ground is expected behind each opening, beside what is seen of it
 BEYOND_M = (1.7, 3.3, 4.1)  # so far along a beam it is looked whether that ground is new, too ...
 ABOUT = 2  # ... which counts for places within so many times THIN_M
 
@@ -94,7 +95,7 @@ class KnownGround:
 
     def openings(self, experiences: ExperienceMap, least: int) -> tuple[NDArray[np.int64], _Array, _Array]:
         """Experiences (k,), the places (k, 2), m, map frame, that were seen from there and never driven on, and how much
-        new ground lies about each, (k,), m².
+        new ground is expected about each, (k,), m².
 
         least: so many beams must have seen a place; a single one may be a false echo. Only what lies on the robot's own
         submap counts: where the others lie to it is unknown.
@@ -111,7 +112,7 @@ class KnownGround:
         known = np.concatenate([poses[own, :2], placed(done, poses)])
         often, area = _new_ground(np.concatenate([places, *beyond]), known, least)
         often, area = often[: len(places)], area[: len(places)]
-        return rows[often].astype(np.int64), places[often], area[often]
+        return rows[often].astype(np.int64), places[often], area[often] + UNSEEN_M2
 
 
 def placed(points: list[tuple[int, float, float]], poses: _Array) -> _Array:

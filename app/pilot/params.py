@@ -19,7 +19,7 @@ class PilotParams:
     cruise_speed: float = param(0.36, "speed on free floor", 0.05, 0.5, "m/s", symbol="v", source="B 6")
     turn_rate: float = param(
         1.0, "yaw rate of a turn on the spot, and the highest on an arc", 0.2, 1.57, "rad/s", symbol="ω", source="A 6")
-    clearance: float = param(0.27, "least distance from the robot's middle to an obstacle", 0.2, 1.0, "m")
+    clearance: float = param(0.24, "least distance from the robot's middle to an obstacle", 0.2, 1.0, "m")
     echo_s: float = param(3.0, "how long a sonar echo is remembered", 0.1, 60.0, "s", live=False)
     wall_distance: float = param(
         0.55, "distance kept from the wall on the left", 0.3, 2.0, "m", source="C IV.D; value ours")
@@ -46,7 +46,7 @@ class PilotParams:
         True, "the robot goes on to new ground, closes loops and goes back on purpose; off = it only wanders",
         source="ours; off: C IV.D")
     return_sigma_m: float = param(
-        3.0, "it goes back to known ground when odometry may be off by this since it left that", 0.01, 1e3, "m")
+        1.5, "it goes back to known ground when odometry may be off by this since it left that", 0.01, 1e3, "m")
     loop_share: float = param(
         0.25, "known ground nearer than this share of the way there by the links is driven along until a loop closes", 0.0,
         1.0)

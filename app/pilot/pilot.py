@@ -272,6 +272,7 @@ class Freeing:
         self._move_on(odometry, asked)
         if self._left_s > 0:
             self._left_s -= odometry.dt
+            self._still_s = 0.0
             if self._left_s < FREE_TURN_S:
                 self._drive = (0.0, self._drive[1])
             return self._drive

@@ -2,11 +2,12 @@
 
 Wandering follows walls and crosses at random, as in IROS 2005; nothing in it seeks what the map lacks. The robot goes, in
 this order: back to old ground when its odometry may be off by too much since it was last there; along known ground that is
-near but far by the links, which closes a loop; into the opening that it reaches soonest. Only where nothing is new does it
-wander, and between whiles visit the place where it has not been for longest. On a submap, as after a kidnap, it looks for the
-rest of its map: it does not go back, any beam makes an opening, and those near where the submap began come first: perhaps it
-was not carried at all, and then the rest lies there. Its input is map, sonars and odometry only.
+near but far by the links, which closes a loop; into the opening with the most new ground for the time. Only where nothing is
+new does it wander, and between whiles visit the place where it has not been for longest. On a submap, as after a kidnap, it
+looks for the rest of its map: it does not go back, any beam makes an opening, and those near where the submap began come
+first: perhaps it was not carried at all, and then the rest lies there. Its input is map, sonars and odometry only.
 test_seeking.py::{test_it_goes_where_open_floor_was_seen, test_on_new_ground_for_long_it_goes_back,
+test_before_it_came_to_anything_again_it_goes_back_to_where_it_began,
 test_with_nothing_new_it_goes_where_it_has_not_been_for_longest, test_while_there_is_an_opening_it_does_not_wander,
 test_on_a_submap_it_does_not_go_back, test_on_a_submap_it_begins_where_that_began}.
 """
@@ -27,21 +28,23 @@ from app.pilot.route_following import RouteFollower
 from disk import kind
 from ratslam_core import ExperienceMap, Odometry, Pose2
 
-TRIP_MOST_S = 150.0  # a trip is given up after this time
+TRIP_SLOW, TRIP_MORE_S = 1.5, 60.0  # a trip may take so many times what its links say, and this time more
 CHOOSE_S = 5.0  # while it wanders, it looks for something new as often ...
 WANDER_S = 45.0  # ... and after this time it visits an old place
+AFTER_BARRED_S = 10.0  # it wanders for so long where it found no way
 LONG_AGO_S = 120.0  # places visited more lately than this are not sought again
 SEARCH_SHARE = 0.1  # the rest of its map is looked for while another submap is larger than this share of its own ...
 SEARCH_HOME = 2.0  # ... metres of the way there that a metre from where its submap began to an opening counts as ...
 SEARCH_BEAMS = 1  # ... and an opening is what so many beams have seen
 BEGIN_S = 10.0  # added to the time of each way: small ground near by is not worth a start
 INTO_S, INTO_REACH_M = 25.0, 0.4  # driving into an opening ends after this time, or this near to its place ...
-INTO_FREE_M = 0.2  # ... or when less than this is free towards it
+INTO_STILL_S, INTO_STEP_M = 4.0, 0.1  # ... or when for so long it came no such step nearer
+INTO_FREE_M = 0.2  # it is seen from here if so much is free towards it
 
 _Point = tuple[float, float]
 
 
-@kind("seeker/4")
+@kind("seeker/5")
 class Seeker:
     """Decides when and where to drive on purpose, and drives there. `follower` is set on the way."""
 
@@ -56,7 +59,8 @@ class Seeker:
         self._opening: Pose2 | None = None  # what to drive into at the end of the trip, in the frame of its experience
         self._closer = LoopCloser(sonar_angles_rad)
         self._into_s = -1.0  # time of driving into it, below 0 on the way there
-        self._trip_s = 0.0
+        self._nearest_m, self._nearer_s = math.inf, 0.0  # how near to the opening it came, and when, as `_into_s`
+        self._trip_s = self._trip_most_s = 0.0
         self._wander_s = 0.0  # time since the last trip
         self._wait_s = 0.0  # time before it chooses again
 
@@ -116,7 +120,7 @@ class Seeker:
     def _aim(
         self, follower: RouteFollower, experiences: ExperienceMap, local: LocalMovement, dt: float, p: PilotParams
     ) -> _Point | None:
-        if self._trip_s > TRIP_MOST_S or (self.returning and self.ground.new_m == 0.0):
+        if self._trip_s > self._trip_most_s or (self.returning and self.ground.new_m == 0.0):
             return None
         if self._into_s < 0.0:
             aim = follower.step(experiences, local, dt, p)
@@ -133,10 +137,11 @@ class Seeker:
             return None
         place = experiences.pose(follower.goal).compose(self._opening)
         here = experiences.robot.inverse().compose(place)
-        there = math.hypot(here.x, here.y) < INTO_REACH_M
-        x, y = local.gap_towards(here.x, here.y, p) if _searching(experiences) else (here.x, here.y)
-        blocked = local.free_way(math.atan2(y, x), p) < INTO_FREE_M
-        return None if there or blocked else (x, y)
+        away_m = math.hypot(here.x, here.y)
+        if away_m < self._nearest_m - INTO_STEP_M:
+            self._nearest_m, self._nearer_s = away_m, self._into_s
+        still = self._into_s - self._nearer_s > INTO_STILL_S
+        return None if away_m < INTO_REACH_M or still else (here.x, here.y)
 
     def _end(self, experiences: ExperienceMap) -> None:
         assert self.follower is not None
@@ -144,15 +149,18 @@ class Seeker:
         self.ground.been_at(goal.x, goal.y, experiences.poses)
         if self._opening is not None:
             self.ground.tried(self.follower.goal, self._opening.x, self._opening.y, experiences.poses)
+        barred = self.follower.state == "exploring"
         self.stop()
+        self._wait_s = AFTER_BARRED_S if barred else 0.0
 
     def _choose(
         self, experiences: ExperienceMap, local: LocalMovement, ranges_m: NDArray[np.float32], p: PilotParams
     ) -> None:
-        """Old ground if odometry may be far off; else a loop to close; else the nearest opening; else, after wandering,
+        """Old ground if odometry may be far off; else a loop to close; else the best opening; else, after wandering,
         the place that was not visited for longest."""
         times, searching = experiences.temporal_map.times_to(experiences.active), _searching(experiences)
         self._trip_s, self._into_s = 0.0, -1.0
+        self._nearest_m, self._nearer_s = math.inf, 0.0
         off_m = experiences.params.odometry_drift * self.ground.new_m
         goal = self._old_ground(times) if off_m > p.return_sigma_m and not searching else None
         self.returning = goal is not None
@@ -167,12 +175,15 @@ class Seeker:
         if goal is None and self.explored and self._wander_s > WANDER_S:
             goal = self._long_ago(times)
         if goal is not None:
+            self._trip_most_s = TRIP_SLOW * float(times[goal]) + TRIP_MORE_S
             self.follower = RouteFollower(goal, self._bars)
 
     def _old_ground(self, times: NDArray[np.float64]) -> int | None:
-        old = np.flatnonzero(np.isfinite(times) & (self.ground.now_s - self.ground.made_s > OLD_AFTER_S))
-        old = old[self.ground.last_s[old] - self.ground.made_s[old] > OLD_AFTER_S] if len(old) else old
-        return int(old[np.argmin(times[old])]) if len(old) else None
+        ground = self.ground
+        old = np.flatnonzero(np.isfinite(times) & (ground.now_s - ground.made_s > OLD_AFTER_S))
+        again = old[ground.last_s[old] - ground.made_s[old] > OLD_AFTER_S]
+        known = again if len(again) else old[:1]  # at first only where it began
+        return int(known[np.argmin(times[known])]) if len(known) else None
 
     def _best_opening(
         self, experiences: ExperienceMap, local: LocalMovement, times: NDArray[np.float64], p: PilotParams, least: int
@@ -206,7 +217,7 @@ class Seeker:
         return goal
 
     def _long_ago(self, times: NDArray[np.float64]) -> int | None:
-        known = np.flatnonzero(np.isfinite(times) & (times < TRIP_MOST_S))
+        known = np.flatnonzero(np.isfinite(times))
         if not len(known):
             return None
         goal = int(known[np.argmin(self.ground.last_s[known])])

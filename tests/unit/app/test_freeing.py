@@ -57,6 +57,14 @@ def test_bumped_and_getting_nowhere_it_backs_off_and_turns() -> None:
     assert {yaw for _, yaw in drives[begin : begin + 25]} == {turn}
 
 
+def test_after_getting_free_it_may_drive_for_a_second_though_it_still_touches_something() -> None:
+    """It had turned to open floor, touched the wall beside it, and backed off again: a minute in a corner."""
+    pilot = a_pilot()
+    backing = [pilot.step(FAR, True, STILL, NOWHERE)[0] < 0 for _ in range(80)]  # type: ignore[arg-type]
+    begins = [k for k in range(1, 80) if backing[k] and not backing[k - 1]]
+    assert begins[1] - begins[0] >= 25 + 10
+
+
 def test_getting_nowhere_without_a_bump_takes_longer_and_getting_ahead_is_not_being_stuck() -> None:
     stuck, ahead, frees = a_pilot(stuck_s=3.0), a_pilot(stuck_s=3.0), list[bool]()
     for _ in range(300):

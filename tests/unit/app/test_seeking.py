@@ -81,6 +81,7 @@ def test_without_seeking_it_only_wanders() -> None:
 def test_it_goes_where_open_floor_was_seen() -> None:
     """All experiences lie on one side of the room; those in the middle have seen far to the other side."""
     run = a_run(one_side(), **NO_LOOPS)
+    run.pilot._explorer._far = 0.0  # it has looked behind itself
     ground = ground_of(run, (slice(10, 14), AHEAD, 5.0))
     to_a_trip(run)
     to_its_end(run)
@@ -108,6 +109,7 @@ def test_while_there_is_an_opening_it_does_not_wander() -> None:
     """In a long corridor, of which it knows the first metres, it goes on and on."""
     map_ = HandMadeMap(*chain((0.5, 1.2), (3.0, 1.2)))
     run = a_run(map_, (0.0, 3.0, 20.0, 3.0), side=20.0, far_look_back_m=1000.0)
+    run.pilot._explorer._far = 0.0  # it has looked behind itself
     ground_of(run)
     for _ in range(450):
         here = run.truth
@@ -118,10 +120,18 @@ def test_while_there_is_an_opening_it_does_not_wander() -> None:
     assert run.doing["going where the map is thin"] > 350
 
 
+def test_before_it_first_goes_to_new_ground_it_looks_behind_itself() -> None:
+    """Where it began nobody has looked the other way: half of a corridor would never be an opening."""
+    run = a_run(one_side(), **NO_LOOPS)
+    ground_of(run, (slice(10, 14), AHEAD, 5.0))
+    run.run(150)
+    assert run.doing["turning back to look"] > 60
+
+
 def test_of_two_openings_the_one_with_more_new_ground_for_the_way_is_taken() -> None:
     """The niche is nearer, the hall is worth the way; of two halls the nearer one."""
     for far, expected in ((range(4, 16), range(4, 16)), (range(4, 7), range(19, 22))):
-        run = a_run(one_side(), start=(1.0, 6.5), **NO_LOOPS)
+        run = a_run(one_side(), start=(1.0, 5.5), **NO_LOOPS)
         ground_of(run, (slice(far.start, far.stop), AHEAD, 5.0), (slice(19, 22), AHEAD, 5.0))
         assert chosen(run) in expected
         assert run.pilot._seeker.reason.startswith("new ground, ")
@@ -150,6 +160,17 @@ def test_on_new_ground_for_long_it_goes_back() -> None:
     to_its_end(run)
     assert ground.new_m == 0.0
     assert math.dist(run.truth, run.map.poses[11, :2]) < 0.7
+
+
+def test_before_it_came_to_anything_again_it_goes_back_to_where_it_began() -> None:
+    """Nothing was known ground then, and the robot drove 230 m into a suburb."""
+    run = a_run(two_sides(), return_sigma_m=0.5, **NO_LOOPS)
+    ground = run.pilot._seeker.ground
+    ground.now_s, ground.new_m = 1000.0, 50.0
+    ground._made_s[: ground.count] = ground._last_s[: ground.count] = np.linspace(100.0, 990.0, ground.count)
+    assert to_a_trip(run) == "going back to known ground"
+    assert run.pilot._seeker.follower is not None
+    assert run.pilot._seeker.follower.goal == 0
 
 
 def test_with_nothing_new_it_goes_where_it_has_not_been_for_longest() -> None:
