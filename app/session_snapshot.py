@@ -262,7 +262,11 @@ def _seeker(seeker: Seeker, experiences: int) -> None:
         _follower(seeker.follower, experiences)
     true(isinstance(seeker.explored, bool), "whether all is explored must be a truth value")
     true(isinstance(seeker.reason, str), "the reason of a trip must be words")
-    within("openings", array("openings", seeker.openings, np.float64, (None, 2)), -FAR_M, FAR_M)
+    openings = array("openings", seeker.openings, np.float64, (np.size(seeker.openings) // 2, 2))
+    within("openings", openings, -FAR_M, FAR_M)
+    for name, value in (("the trip", seeker._trip_s), ("the longest trip", seeker._trip_most_s)):
+        number(name, value, 0.0, LONGEST_S)
+    number("how near to the opening it came", seeker._nearest_m, 0.0)
 
 
 def _bars(bars: Bars) -> None:

@@ -101,7 +101,7 @@ class Seeker:
         p: PilotParams,
     ) -> _Point | None:
         """The next point to head for, metres in the robot's frame; None: wander. ranges_m: (8,) from left to right."""
-        if not p.seek:
+        if not p.seek or len(experiences) == 0:
             return None
         if self.follower is None:
             self._wander_s += odometry.dt
