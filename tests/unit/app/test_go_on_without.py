@@ -11,7 +11,7 @@ pytestmark = pytest.mark.slow
 
 
 def test_without_the_views_that_led_to_it_there_is_no_such_snap() -> None:
-    engine = an_engine(OFFICE, 8)
+    engine = an_engine(OFFICE, 4)
     run_for(engine, 2400)
     tell(engine, type="kidnap")
     while not (snaps := of_kind(engine, "snap")):

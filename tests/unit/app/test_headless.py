@@ -132,6 +132,6 @@ def test_a_saved_brain_finds_its_way_again(tmp_path: Path) -> None:
     brain_file.save()
     brain = load_brain(tmp_path / "brain.npz")
     known = len(brain.experience_map)
-    report = run_headless(OFFICE, 11, 2.0, brain=brain, goals=2)
+    report = run_headless(OFFICE, 12, 2.0, brain=brain, goals=2)
     assert all(goal["experience"] < known for goal in report["goals"])  # places where this robot has never been
     assert all(goal["reached"] for goal in report["goals"])

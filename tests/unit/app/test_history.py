@@ -56,7 +56,7 @@ def test_a_map_that_has_diverged_is_told_once() -> None:
 
 def test_trail_path_and_series_grow(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("app.views.history.TRAIL_S", 20.0)
-    session = a_session()
+    session = a_session(config=Config().with_value("pilot.seek", False))  # else it begins by turning on the spot
     history, map_ = History(session), session.brain.experience_map
     go_on(session, history, 101)
     truth, series = session.simulator.truth, history.series.series

@@ -73,7 +73,9 @@ def test_a_wall_close_ahead_is_turned_from() -> None:
 @pytest.mark.usefixtures("interpreted")
 def test_the_free_way_is_the_distance_less_the_clearance() -> None:
     local = sensed((0.0, 1.0), (math.pi / 2, 0.5), (3.0, 2.0))
-    for bearing, way in [(0.0, 0.73), (math.pi / 2, 0.23), (-math.pi / 2, 1.6), (3.0, 1.6)]:  # 3: farther than it looks
+    clear = USUAL.clearance
+    ways = [(0.0, 1.0 - clear), (math.pi / 2, 0.5 - clear), (-math.pi / 2, 1.6), (3.0, 1.6)]  # 3: farther than it looks
+    for bearing, way in ways:
         assert local.free_way(bearing, USUAL) == pytest.approx(way)
     assert sensed((0.0, 0.1)).free_way(0.0, USUAL) == 0.0
 

@@ -21,7 +21,7 @@ PARTS = ("config", "simulator", "pilot", "brain", "evaluation")
 
 def a_full_session() -> Session:
     """It contains everything: doors, people, a goal and its route, a bar, a kidnap, a laser."""
-    made = Session(load_world("living"), 5)
+    made = Session(load_world("living"), 8)
     made.set_parameters({"robot.laser_beams": 11})
     for tick in range(300):
         if tick == 100:
