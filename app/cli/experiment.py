@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from app.protocol.experiment import Experiment
 
 WIDTH = 100
-_RESERVED = ("all", "check", "open", "results")
+_RESERVED = ("all", "check", "open", "results", "verdicts")
 
 
 def add_experiment(commands: Verbs) -> None:
@@ -29,7 +29,9 @@ def add_experiment(commands: Verbs) -> None:
         "all                 runs every experiment that comes with the program\n"
         "open ID             opens a trial in the dashboard, at the moment that decided it\n"
         "check FILE.toml     says whether a file of your own is right\n"
-        "results             writes results.md and results.json from the stored trials (--out, default ./docs)",
+        "results             writes results.md and results.json from the stored trials (--out, default ./docs)\n"
+        "verdicts            what the papers claim, and whether it holds by results.json (--out, default: this program's);\n"
+        "                    fails when a verdict has changed",
     )
     parser.add_argument("what", nargs="*", metavar="NAME|FILE.toml|all|open ID|check FILE", help="see below")
     parser.add_argument("--engine", choices=(*ENGINES, "all"), default="all", help="whose rules (default all)")
@@ -79,6 +81,8 @@ def _experiment(args: argparse.Namespace) -> int:
             return run_all(args)
         case ["results"]:
             return _results(args)
+        case ["verdicts"]:
+            return _verdicts(args)
         case [name]:
             from app.cli.experiment_run import run_one
 
@@ -166,6 +170,23 @@ def _results(args: argparse.Namespace) -> int:
     for path in write_results(runs, folder):
         print(path)
     return 0
+
+
+def _verdicts(args: argparse.Namespace) -> int:
+    from app.experiments.results import DOCS, cells_of, read_results
+    from app.experiments.verdicts import broken, rows, verdicts
+    from app.protocol.experiment import catalogue
+
+    data = read_results((args.out or DOCS) / "results.json")
+    found = list(verdicts((experiment, cells_of(data, experiment.name)) for experiment in catalogue()))
+    for name, says, paper, ours, why in rows(found):
+        print(f"{name}: {says}")
+        told = (("by its rules", paper), ("by ours", ours), ("why", why))
+        print(*(f"    {head}: {text}" for head, text in told if text), sep="\n")
+    changed = broken(found)
+    for words in changed:
+        print(f"ratslam: {words}", file=sys.stderr)
+    return 1 if changed else 0
 
 
 def check_whole(experiment: Experiment) -> None:

@@ -8,6 +8,7 @@ from __future__ import annotations
 import hashlib
 import json
 import math
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import astuple
 from pathlib import Path
@@ -16,6 +17,7 @@ from typing import Any, cast
 from app.code_version import code_version
 from app.experiments.store import StoredTrial
 from app.experiments.summary import ENGINE_WORDS, CellSummary, Estimate, found, summarise, words, words_of
+from app.experiments.verdicts import HEADS, JUDGED, rows, verdicts
 from app.protocol.experiment import Experiment
 
 DOCS = Path(__file__).parents[2] / "docs"
@@ -70,7 +72,7 @@ def gathered(runs: Iterable[tuple[Experiment, Sequence[StoredTrial]]]) -> dict[s
 def results_markdown(data: Mapping[str, Any], experiments: Sequence[Experiment]) -> str:
     """The text of docs/results.md: the experiments in this order, those without numbers named at the end."""
     numbers = data["experiments"]
-    parts = [_HEADING]
+    parts = [*filter(None, (_HEADING, _verdicts(data, experiments)))]
     parts += [
         _section(experiment, numbers[experiment.name]) for experiment in experiments if experiment.name in numbers
     ]
@@ -78,6 +80,31 @@ def results_markdown(data: Mapping[str, Any], experiments: Sequence[Experiment])
     if missing:
         parts.append(f"## Not run yet\n\n{', '.join(missing)}\n")
     return "\n".join(parts)
+
+
+def _verdicts(data: Mapping[str, Any], experiments: Sequence[Experiment]) -> str:
+    """Of every claim of the papers, whether it holds: what a reader asks first."""
+    found = list(verdicts((experiment, cells_of(data, experiment.name)) for experiment in experiments))
+    if not found:
+        return ""
+    titles = {experiment.name: experiment.title for experiment in experiments}
+    linked = [(f"[{name}](#{_anchor(titles[name])})", *rest) for name, *rest in rows(found)]
+    held = {engine: [v.agrees for v in found if v.engine == engine and v.agrees is not None] for engine in JUDGED}
+    counts = ", ".join(
+        f"{sum(held[e])} of {len(held[e])} by {words}" for e, words in (("paper", "their own rules"), ("ours", "ours"))
+    )
+    return f"""## Does it agree with the papers?
+
+What the papers claim, and whether it holds here: {counts}. `ratslam experiment verdicts` prints this and fails when one
+of them has changed.
+
+{_lines([HEADS, ["---"] * len(HEADS), *linked])}
+"""
+
+
+def _anchor(title: str) -> str:
+    """Of a heading, as the pages that show Markdown make it."""
+    return re.sub(r"[^\w -]", "", title.lower()).replace(" ", "-")
 
 
 def outdated(data: Mapping[str, Any], experiments: Sequence[Experiment]) -> list[str]:
@@ -122,7 +149,12 @@ def read_results(path: Path) -> dict[str, Any]:
 
 def published_cells(name: str, path: Path = DOCS / "results.json") -> list[CellSummary]:
     """The cells of an experiment as they stand in docs/results.json; none if it is not there."""
-    run = read_results(path)["experiments"].get(name)
+    return cells_of(read_results(path), name)
+
+
+def cells_of(data: Mapping[str, Any], name: str) -> list[CellSummary]:
+    """The cells of an experiment in the numbers of docs/results.json; none if it is not there."""
+    run = data["experiments"].get(name)
     return [] if run is None else [_cell(row) for row in run["cells"]]
 
 

@@ -85,6 +85,28 @@ class Original(Part):
     source: Line
 
 
+class Claim(Part):
+    """What the paper says, as a condition on a score, and by whose rules it holds here. The verdict stands in the file with
+    its reason, so that a result that changes it is noticed (`ratslam experiment verdicts`)."""
+
+    says: Line
+    score: Labelled  # its label
+    levels: list[Labelled] = []  # at these levels the value is ...
+    least: float = -math.inf
+    most: float = math.inf
+    minus: list[Labelled] = []  # ... or its difference from the value at these other levels is ...
+    falls_along: Labelled | None = None  # ... or it falls along this axis (trend of a rate)
+    agrees: list[EngineName] = []  # by whose rules it holds
+    why: Line = ""  # the cause where it does not
+
+    @model_validator(mode="after")
+    def _a_condition(self) -> Claim:
+        bounded = self.least > -math.inf or self.most < math.inf
+        if bounded == (self.falls_along is not None):
+            raise ValueError(f"claim {self.says!r}: give least or most, or else falls_along = AXIS")
+        return self
+
+
 class FigureSpec(Part):
     """A figure. What each kind shows, and its options: figure_options.py."""
 
@@ -118,6 +140,7 @@ class Experiment(Part):
     protocol: Annotated[list[Step], Field(min_length=1)]
     scores: Annotated[list[Score], Field(min_length=1)]
     original: list[Original] = []
+    claims: list[Claim] = []
     figures: Annotated[list[FigureSpec], Field(max_length=100)] = []
     quick: Quick = Quick()
     watch: list[Label] = []  # the levels at which "Watch it" begins; left out: the first of each axis
@@ -136,10 +159,26 @@ class Experiment(Part):
         _require_different([axis.name for axis in self.axes], "axes: two are named")
         _require_different([score.label for score in self.scores], "scores: two are labelled")
         self._require_room()
-        for original in self.original:
-            if original.score not in {score.label for score in self.scores}:
-                raise ValueError(f"original: there is no score labelled {original.score!r}")
+        for kind, parts in (("original", self.original), ("claim", self.claims)):
+            for part in parts:
+                if part.score not in {score.label for score in self.scores}:
+                    raise ValueError(f"{kind}: there is no score labelled {part.score!r}")
+        for claim in self.claims:
+            self._require_levels(claim)
         return self
+
+    def _require_levels(self, claim: Claim) -> None:
+        """Of every axis one, unless it is the one along which the score falls: then a claim is about one cell of an engine."""
+        for levels in (claim.levels, claim.minus) if claim.minus else (claim.levels,):
+            for axis in self.axes:
+                known = {level.label for level in axis.levels}
+                if len(known & set(levels)) != (0 if axis.name == claim.falls_along else 1):
+                    raise ValueError(f"claim {claim.says!r}: give one level of {axis.name}: {', '.join(sorted(known))}")
+        if claim.falls_along is not None:
+            axes = {axis.name for axis in self.axes}
+            rated = next(score for score in self.scores if score.label == claim.score).rate is not None
+            if claim.falls_along not in axes or not rated:
+                raise ValueError(f"claim {claim.says!r}: falls_along is one of the axes, and its score a rate")
 
     def _require_room(self) -> None:
         """The product of all axes is known before anything of it is made."""
