@@ -46,7 +46,7 @@ def verdicts(found: Iterable[tuple[Experiment, Sequence[CellSummary]]]) -> Itera
 def rows(found: Sequence[Verdict]) -> list[tuple[str, ...]]:
     """A row of `HEADS` for each claim."""
     claims = dict.fromkeys((v.experiment.name, v.claim.says) for v in found)
-    made = []
+    made = list[tuple[str, ...]]()
     for name, says in claims:
         by = {v.engine: v for v in found if (v.experiment.name, v.claim.says) == (name, says)}
         claim = next(iter(by.values())).claim
