@@ -13,11 +13,12 @@ from app.session import Session, is_lost
 from app.views.arrays import frozen
 from app.views.reasons import Reasons, why_no_route, words_of
 from disk import kind
-from ratslam_core import find_places
+from ratslam_core import Pose2, find_places
 from web.messages import Closure, Event, EventKind, GoalState, Packet, Snap, WhyReport
 from web.messages.robot_status import goal_meaning, odds_words
 
 MOST_EVENTS = 2000
+ELSEWHERE_M = 1.0  # a belief this far from the last one is of another place
 NOTHING_NEW = "nothing new is in sight; it visits what it has not seen for longest"
 
 
@@ -119,7 +120,7 @@ NEW_GROUND, LONG_AGO_S = 20, 30.0  # after so many new experiences, one that was
 DIVERGED_EVERY_S = 60.0  # a map that diverges again and again is marked no more often
 
 
-@kind("event_watch/6")
+@kind("event_watch/7")
 class EventWatch:
     """Call `watch` after each tick."""
 
@@ -134,7 +135,8 @@ class EventWatch:
         self.lost = False
         self._at_a_loss = False  # lost, or its submap not yet merged although a hypothesis is accepted
         self._lost_s: float | None = None  # when it noticed that it was carried, until its map is one again
-        self._believed, self._joined = False, 0  # some place since then; submaps that were joined before
+        self._believed: Pose2 | None = None  # where it believed to be last since then
+        self._joined = 0  # submaps that were joined before
         self._corrected = session.brain.experience_map.corrected  # how often it proved to be elsewhere
         self._before = session.brain.pose_cells.winner
         self._goal_state: tuple[int | None, str] = None, ""  # the goal, and what was last true of it
@@ -203,18 +205,20 @@ class EventWatch:
         self._watch_error()
 
     def _watch_belief(self, carried: bool) -> None:
-        """Marks that a hypothesis is accepted again after a kidnap, and that the submaps are merged."""
+        """Marks each place that is believed after a kidnap, and that the submaps are merged."""
         session, map_ = self._session, self._session.brain.experience_map
         belief, joined = map_.belief, map_.submaps.merged
         if carried and self._lost_s is None:
-            self._lost_s, self._believed, self._joined = session.time_s, False, joined
+            self._lost_s, self._believed, self._joined = session.time_s, None, joined
         if self._lost_s is None:
             return
         after = f"{session.time_s - self._lost_s:.1f} s after the kidnap was noticed"
-        if carried and belief is not None and not self._believed:
-            self._believed = True
-            event = self._log.note("believes", f"a place {after}, {odds_words(math.exp(belief.log_odds))}")
-            self.reasons.believes(event, belief)
+        if carried and belief is not None:
+            last, self._believed = self._believed, belief.pose
+            if last is None or math.hypot(last.x - belief.pose.x, last.y - belief.pose.y) > ELSEWHERE_M:
+                which = "a place" if last is None else "another place"
+                event = self._log.note("believes", f"{which} {after}, {odds_words(math.exp(belief.log_odds))}")
+                self.reasons.believes(event, belief)
         if not carried:
             self._lost_s = None
             if joined > self._joined:

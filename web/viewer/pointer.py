@@ -121,8 +121,13 @@ class Pointer:
         def answered(answer: Answer) -> None:
             click.answered(answer, f"It does not look for the {name}")
 
-        self._send(SetMode(type="set_mode", mode="explore"), answered)
-        self._send(RunUntil(type="run_until", what="place", place=name), answered)
+        def explores(answer: Answer) -> None:
+            if isinstance(answer, Refused):
+                answered(answer)
+            else:
+                self._send(RunUntil(type="run_until", what="place", place=name), answered)
+
+        self._send(SetMode(type="set_mode", mode="explore"), explores)
 
     def _ask(self, place: tuple[float, float], click: Click, plate: MapPlate, now_s: float) -> None:
         self._asked = (place, now_s, None)
