@@ -235,6 +235,7 @@ def _follower(follower: RouteFollower, experiences: int) -> None:
     for goal in follower.goals:
         whole("the goal", goal, 0, experiences - 1)
     true(follower.state in get_args(GoalState), f"the way to a goal cannot be {follower.state!r}")
+    true(isinstance(follower._cut_off, str), "what cuts a goal off must be words")
     if follower._route is not None:
         true(isinstance(follower._route, Route), "the route must be one")
         nodes = array("the route", follower._route.experiences, np.int64, (None,))

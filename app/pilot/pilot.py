@@ -59,6 +59,11 @@ class Pilot:
         return (self._follower.goal, self._follower.state) if self._follower else None
 
     @property
+    def why_no_route(self) -> str:
+        """What keeps the robot from its goal, in a few words; "" while a route is known, or without a goal."""
+        return "" if self._follower is None else self._follower.why
+
+    @property
     def behaviour(self) -> Behaviour:
         """The current behaviour. It is stored by name, since a state can hold a name."""
         return Behaviour[self._behaviour]

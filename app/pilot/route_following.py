@@ -92,9 +92,10 @@ class Progress:
     remaining_m: float | None
     route: NDArray[np.int64]  # experiences
     arrival_s: _Array  # seconds from now
+    why: str = ""  # no route is known, in a few words
 
 
-@kind("route follower/3")
+@kind("route follower/4")
 class RouteFollower:
     """Keeps the quickest route to a goal, one experience or several of one place, and says which point to head for."""
 
@@ -113,6 +114,13 @@ class RouteFollower:
         self._look_around_s = 0.0
         self._headway = Headway()
         self._bars = Bars() if bars is None else bars
+        self._cut_off = ""  # what keeps the map from having a way there, in words
+
+    @property
+    def why(self) -> str:
+        """Why no route is known, in a few words; "" while one is."""
+        known = self._route is not None and self.state not in ("exploring", "unreachable")
+        return "" if known or self.state == "arrived" else self._cut_off or "blocked on the way"
 
     @property
     def goal(self) -> int:
@@ -135,6 +143,7 @@ class RouteFollower:
             return False
         self.failed, self._route, self._age_s, self._plan_in_s = False, None, math.inf, 0.0
         self._nearest_m, self._since_nearer_s = math.inf, 0.0
+        self._cut_off = "on another submap"
         self.state = self._state_on_the_way(dt, sure=not experiences.lost)
         return True
 
@@ -186,7 +195,7 @@ class RouteFollower:
         if self.state == "arrived":
             return Progress(self.goal, self.state, 0.0, 0.0, *nothing)
         if self._route is None or self.state in ("exploring", "unreachable"):
-            return Progress(self.goal, self.state, None, None, *nothing)
+            return Progress(self.goal, self.state, None, None, *nothing, self.why)
         nodes = self._route.experiences[self._at :]
         arrival = self._route.arrival_s[self._at :] - self._route.arrival_s[self._at]
         xy = experiences.poses[nodes, :2]
@@ -256,7 +265,8 @@ class RouteFollower:
         times = ways.times_to(self.goals, delays)
         away = np.hypot(poses[:, 0] - robot.x, poses[:, 1] - robot.y)
         start = self._start(experiences, local, times, away, p)
-        if not np.isfinite(times[start]):
+        self._cut_off = "" if np.isfinite(times[start]) else _cut_off(experiences, times)
+        if self._cut_off:
             return
         self._route = ways.route_again(start)
         self._age_s, self._at = 0.0, 0
@@ -302,6 +312,13 @@ class RouteFollower:
         self._at, to = _along(experiences.poses, nodes, self._at, robot.x, robot.y, WINDOW_M, LOOKAHEAD_M)
         x, y, _ = experiences.poses[nodes[to]]
         return _from_robot(robot, x, y)
+
+
+def _cut_off(experiences: ExperienceMap, times: _Array) -> str:
+    """Why no way leads to where times (n,) s are finite. A link that was deleted is the cause if it led there."""
+    ends = np.array(experiences.dropped_links, np.int64).reshape(-1, 2)
+    led_there = np.isfinite(times)[ends]
+    return "its links were deleted" if (led_there[:, 0] != led_there[:, 1]).any() else "no links lead there"
 
 
 def _from_robot(robot: Pose2, x: float, y: float) -> tuple[float, float]:

@@ -141,5 +141,5 @@ def _goal(session: Session, companion: Companion) -> Goal | None:
     return Goal(
         goals[0], place.x, place.y, state, way.eta_s, way.remaining_m,
         frozen(map_.poses[way.route, :2].astype(np.float32)), frozen(way.arrival_s.astype(np.float32)),
-        frozen(map_.poses[list(goals), :2].astype(np.float32)), companion.brain.lost, told.followed,
+        frozen(map_.poses[list(goals), :2].astype(np.float32)), companion.brain.lost, told.followed, way.why,
     )  # fmt: skip

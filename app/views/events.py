@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from app.session import Session, is_lost
 from app.views.arrays import frozen
-from app.views.reasons import Reasons, why_no_route, words_of
+from app.views.reasons import Reasons, words_of
 from disk import kind
 from ratslam_core import Pose2, find_places
 from web.messages import Closure, Event, EventKind, GoalState, Packet, Snap, WhyReport
@@ -247,7 +247,7 @@ class EventWatch:
             self._log.note("arrived", f"at experience {goal}")
         elif meaning == "unreachable":
             self._log.note(
-                "unreachable", f"no route to experience {goal}, {why_no_route(self._session)}: exploring for one"
+                "unreachable", f"no route to experience {goal}, {self._session.pilot.why_no_route}: exploring for one"
             )
 
     def _watch_exploring(self) -> None:

@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 from app.session import Session, is_lost
 from app.views.arrays import frozen
 from app.views.history import TRAIL_S
-from app.views.reasons import why_no_route
 from disk import encode
 from ratslam_core import Pose2
 from ratslam_core.pose_graph.transitions import moved_by
@@ -210,7 +209,7 @@ def goal_view(session: Session) -> Goal | None:
         progress.experience, goal.x, goal.y, progress.state, progress.eta_s, progress.remaining_m,
         frozen(xy.astype(np.float32)), frozen(progress.arrival_s.astype(np.float32)),
         frozen(experiences.poses[list(session.pilot.goals), :2].astype(np.float32)),
-        is_lost(session), session.pilot.mode == "goal", why_no_route(session),
+        is_lost(session), session.pilot.mode == "goal", progress.why,
     )  # fmt: skip
 
 

@@ -6,7 +6,6 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from itertools import chain
 
 import numpy as np
 from numpy.typing import NDArray
@@ -247,16 +246,3 @@ def words_of(causes: tuple[m.SnapCause, ...]) -> str:
 
 def _times(count: int) -> str:
     return "1 observation" if count == 1 else f"{count} observations"
-
-
-def why_no_route(session: Session) -> str:
-    """What keeps the robot from its goal, in a few words; "" while a route is known."""
-    told, map_ = session.pilot.goal_state, session.brain.experience_map
-    if told is None or told[1] not in ("exploring", "unreachable"):
-        return ""
-    goals = list(session.pilot.goals)
-    if not (map_.submap_of[goals] == map_.submap_of[map_.active]).any():
-        return "on another submap"
-    if np.isfinite(map_.temporal_map.times_to(goals)[map_.active]):
-        return "blocked on the way"
-    return "its links were deleted" if set(goals) & set(chain(*map_.dropped_links)) else "no links lead there"

@@ -5,11 +5,10 @@ from __future__ import annotations
 import re
 from itertools import pairwise
 from types import SimpleNamespace
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 from app.config import Config
 from app.pilot import Pilot
@@ -17,7 +16,6 @@ from app.session import Session, is_lost
 from app.views import events
 from app.views.events import PLACES_EVERY_S, EventWatch
 from app.views.history import SERIES_POINTS, STILL_CELLS, History
-from app.views.reasons import why_no_route
 
 from .sessions import a_session
 
@@ -157,25 +155,6 @@ def test_of_a_goal_only_what_is_true_is_noted_and_once(monkeypatch: pytest.Monke
     assert [seen("arrived", lost) for lost in (True, False, True, False)] == [[], *[["arrived"]] * 3]
     for _ in range(2):
         assert seen("unreachable", False) == ["arrived", "unreachable"]
-
-
-def test_why_no_route_is_known_is_told() -> None:
-    """By the map alone: another submap, a way that is known but blocked, deleted links, none at all."""
-    far, near, none = np.array([np.inf, 0.0]), np.array([3.0, 0.0]), ()
-
-    def why(
-        state: str, submaps: tuple[int, int], times: NDArray[np.float64], dropped: tuple[tuple[int, int], ...]
-    ) -> str:
-        ways = SimpleNamespace(times_to=lambda _: times)
-        map_ = SimpleNamespace(submap_of=np.array(submaps), active=0, temporal_map=ways, dropped_links=dropped)
-        pilot = SimpleNamespace(goal_state=(1, state), goals=(1,))
-        return why_no_route(cast("Session", SimpleNamespace(pilot=pilot, brain=SimpleNamespace(experience_map=map_))))
-
-    assert why("exploring", (0, 1), far, none) == "on another submap"
-    assert why("exploring", (0, 0), near, none) == "blocked on the way"
-    assert why("unreachable", (0, 0), far, ((0, 1),)) == "its links were deleted"
-    assert why("unreachable", (0, 0), far, ((2, 3),)) == "no links lead there"
-    assert why("tracking", (0, 1), far, none) == ""
 
 
 def test_what_repeats_is_one_line_that_counts() -> None:

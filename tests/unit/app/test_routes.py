@@ -204,6 +204,29 @@ def test_a_door_that_opens_again_is_found_again() -> None:
     assert run.pilot.goal_state == (goal, "arrived")
 
 
+def test_why_no_route_is_known_is_told() -> None:
+    """The map's two halves have lost their link, or never had one; or it was carried to another submap; or it looks round."""
+    halves = HandMadeMap([(0.0, 0.0), (1.0, 0.0), (5.0, 0.0), (6.0, 0.0)], [(0, 1), (2, 3)])
+    for dropped, why in (
+        ([], "no links lead there"),
+        ([(0, 1)], "no links lead there"),
+        ([(1, 2)], "its links were deleted"),
+    ):
+        halves.dropped_links, follower = dropped, a_follower(halves)
+        assert follow(follower, halves) is None
+        assert follower.progress(halves).why == follower.why == why  # type: ignore[arg-type]
+    halves.landed = 2
+    assert follower.carried_away(halves, DT)  # type: ignore[arg-type]
+    assert follower.why == "on another submap"
+    whole = HandMadeMap(*chain((0.0, 0.0), (3.0, 0.0)))
+    follower = a_follower(whole)
+    assert follow(follower, whole) is not None
+    assert follower.why == ""
+    follower._look_around_s = LOOK_AROUND_S
+    assert follow(follower, whole) is None
+    assert follower.why == "blocked on the way"
+
+
 def test_carried_away_from_the_goal_it_looks_for_the_way_back() -> None:
     """It stands at its goal when it is put down elsewhere. Once it notices, it is on a submap: it does not stand there, as
     if it had arrived, but drives; and it goes on to the goal when the submap has become a part of the map again."""

@@ -40,6 +40,7 @@ class HandMadeMap:
         self.pace = 0.0  # links take as long as `link_times` says, whatever their length
         self.trials: list[tuple[int, int, bool]] = []
         self.lost = False
+        self.dropped_links: list[tuple[int, int]] = []
         self.landed = 10**9  # experiences from this one on lie on a submap of their own
 
     def tried(self, i: int, j: int, reached: bool) -> bool:
@@ -48,6 +49,7 @@ class HandMadeMap:
         if reached or all(keep) or sum({i, j} == {a, b} and not well for a, b, well in self.trials) < self.patience:
             return False
         self.links, self.link_times = self.links[keep], self.link_times[keep]
+        self.dropped_links.append((i, j))
         return True
 
     def make(self, x: float, y: float, heading_rad: float) -> None:
