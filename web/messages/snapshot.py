@@ -302,7 +302,7 @@ class AdditionsOff:
 EventKind = Literal[
     "kidnap", "lost", "believes", "joined", "corrected", "recovered", "snap", "goal", "arrived", "unreachable", "packet",
     "brain", "office", "parameter", "link", "place", "false", "warning", "fault", "trial", "tagged", "reached", "failed",
-    "closure", "branch", "recording", "lesson", "explored",
+    "closure", "explored", "branch", "recording", "lesson",
 ]  # fmt: skip
 
 

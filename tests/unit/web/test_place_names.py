@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from tests.fake_snapshots import fake_snapshot
 from tests.unit.web.bench import Bench
-from web.messages import KnownPlace, RunUntil, SetGoal, SetMode, Snapshot
+from web.messages import Accepted, KnownPlace, RunUntil, SetGoal, SetMode, Snapshot
 from web.viewer.marks.names import HEIGHT, REACH
 from web.viewer.marks.robot import SMALLEST
 
@@ -38,9 +38,9 @@ def test_a_click_on_a_name_sends_the_robot_where_the_map_has_the_place(stage: Be
 
 def test_a_place_that_the_map_does_not_know_is_explored_for(stage: Bench) -> None:
     press(stage, "/office/name_1")
-    explore, until = stage.engine.commands
-    assert explore == SetMode(type="set_mode", mode="explore")
-    assert until == RunUntil(type="run_until", what="place", place="attic")
+    assert stage.engine.commands == [SetMode(type="set_mode", mode="explore")]
+    stage.answer(Accepted(5))
+    assert stage.engine.commands[1] == RunUntil(type="run_until", what="place", place="attic")
     assert stage.shown("/map/name_") == ["/map/name_0"]
     for places, shown in (((KITCHEN, replace(ATTIC, map_xy=(0.0, 0.0))), ["/map/name_0", "/map/name_1"]), ((), [])):
         stage.show(replace(NAMED, places=places), 5)
