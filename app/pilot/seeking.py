@@ -103,6 +103,8 @@ class Seeker:
         """The next point to head for, metres in the robot's frame; None: wander. ranges_m: (8,) from left to right."""
         if not p.seek or len(experiences) == 0:
             return None
+        if self.follower is not None and not _on_own_submap(experiences, self.follower.goal):
+            self.stop()  # it was carried: where the trip led to, seen from here, nobody knows
         if self.follower is None:
             self._wander_s += odometry.dt
             self._wait_s -= odometry.dt
@@ -231,6 +233,10 @@ def _searching(experiences: ExperienceMap) -> bool:
     sizes = np.bincount(experiences.submap_of)
     own = int(experiences.submap_of[experiences.active])
     return bool(np.delete(sizes, own).max(initial=0) > SEARCH_SHARE * sizes[own])
+
+
+def _on_own_submap(experiences: ExperienceMap, experience: int) -> bool:
+    return bool(experiences.submap_of[experience] == experiences.submap_of[experiences.active])
 
 
 def _in_the_middle(aim: _Point, ranges_m: NDArray[np.float32]) -> _Point:

@@ -186,6 +186,20 @@ def test_with_nothing_new_it_goes_where_it_has_not_been_for_longest() -> None:
     assert (ground.last_s[near] > 1000.0).all()  # all experiences of the place, whichever way they face
 
 
+def test_carried_on_a_trip_it_leaves_that_at_once() -> None:
+    """It drove on for up to 25 s to where the place would lie if the submaps lay as they happen to."""
+    run = a_run(one_side(), **NO_LOOPS)
+    run.pilot._explorer._far = 0.0  # it has looked behind itself
+    ground_of(run, (slice(10, 14), AHEAD, 5.0))
+    to_a_trip(run)
+    follower = run.pilot._seeker.follower
+    assert follower is not None
+    assert follower.goal < run.map.active
+    run.map.landed = run.map.active  # this and all after it lie on a submap of their own now
+    run.tick()
+    assert run.pilot._seeker.follower is not follower
+
+
 def test_on_a_submap_it_does_not_go_back() -> None:
     """It has been on new ground for long, but it has lost the rest of its map: a large submap, not a tiny one."""
     run = a_run(two_sides(), **NO_LOOPS)
