@@ -18,6 +18,7 @@ class Behaviour(Enum):
     COASTING = 4, "coasting on the old route"
     SEEKING = 4, "going where the map is thin"
     RETURNING = 4, "going back to known ground"
+    LOCALISING = 4, "finding out where it is"
     FREEING_ITSELF = 5, "freeing itself"
     DRIVEN_BY_HAND = 6, "driven by hand"
 

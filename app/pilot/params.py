@@ -43,7 +43,7 @@ class PilotParams:
         "0 = straight on", 0.0, 3.0, "m")
     stuck_s: float = param(6.0, "without progress for this long, the robot frees itself", 1.0, 60.0, "s")
     seek: bool = param(
-        True, "the robot goes on to new ground, closes loops and goes back on purpose; off = it only wanders",
+        True, "the robot goes to new ground, closes loops, goes back and finds out where it is on purpose; off = it only wanders",
         source="ours; off: C IV.D")
     return_sigma_m: float = param(
         1.5, "it goes back to known ground when odometry may be off by this since it left that", 0.01, 1e3, "m")

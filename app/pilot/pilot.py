@@ -9,6 +9,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from app.pilot.active_localisation import active_aim
 from app.pilot.bars import Bars
 from app.pilot.behaviours import Behaviour
 from app.pilot.explore import Explorer
@@ -194,6 +195,11 @@ class Pilot:
         self, ranges_m: NDArray[np.float32], odometry: Odometry, experiences: ExperienceMap
     ) -> tuple[float, float] | None:
         """The drive on a trip of its own choice. None: it wanders, or turns back to look."""
+        aim = active_aim(experiences, self.params) if self.params.seek else None
+        if aim is not None:
+            self._seeker.stop()
+            self.behaviour = Behaviour.LOCALISING
+            return self._towards(aim)
         if self._seeker.on_new_ground:
             if self._explorer.doing is not Behaviour.LOOKING_BACK:
                 self._explorer.travel(abs(odometry.speed * odometry.dt), self.params)
@@ -205,7 +211,11 @@ class Pilot:
         if target is None:
             return None
         self.behaviour = Behaviour.RETURNING if self._seeker.returning else Behaviour.SEEKING
-        return self._local.towards(*self._local.gap_towards(*target, self.params), self.params)
+        return self._towards(target)
+
+    def _towards(self, point: tuple[float, float]) -> tuple[float, float]:
+        """The drive to a point (m, the robot's frame), round what the sonars find in the way."""
+        return self._local.towards(*self._local.gap_towards(*point, self.params), self.params)
 
     def _back_out(self) -> None:
         self._freeing.begin(self.params)
@@ -226,7 +236,7 @@ class Pilot:
             tracking = follower.state == "tracking"
             self.behaviour = Behaviour.FOLLOWING_THE_ROUTE if tracking else Behaviour.COASTING
             self._astray = False
-            return self._local.towards(*self._local.gap_towards(*target, self.params), self.params)
+            return self._towards(target)
         if not self._astray:
             self._astray = True
             self._explorer.begin_crossing()

@@ -9,6 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ratslam_core import ExperienceMapParams, Pose2, TemporalMap
+from ratslam_core.extensions.evidence import Evidence
+from ratslam_core.params import EvidenceParams
 from ratslam_core.pose_graph.transitions import Transitions
 from sim2d import Drive, SimParams, Simulator, Start, Wall, World
 
@@ -39,7 +41,8 @@ class HandMadeMap:
         self.params = ExperienceMapParams()
         self.pace = 0.0  # links take as long as `link_times` says, whatever their length
         self.trials: list[tuple[int, int, bool]] = []
-        self.lost = False
+        self.lost = self.carried = False
+        self.evidence = Evidence(EvidenceParams(), 0.25)
         self.dropped_links: list[tuple[int, int]] = []
         self.landed = 10**9  # experiences from this one on lie on a submap of their own
 
