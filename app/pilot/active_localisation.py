@@ -2,7 +2,8 @@
 
 A view is recognised where it was seen before, and from the same side. To wait until exploring leads there takes time; a robot
 that acts on its likeliest hypothesis either sees soon what it expects, or that it is not there: active localisation, as by
-Fox, Burgard and Thrun (1998), with one hypothesis and no look ahead. It goes on until the submaps are merged.
+Fox, Burgard and Thrun (1998), with one hypothesis and no look ahead. It goes on until the submaps are merged, but explores
+while more has spoken against each place than for it: then it is perhaps on new ground.
 test_active_localisation.py.
 """
 
@@ -15,7 +16,7 @@ from numpy.typing import NDArray
 
 from app.pilot.params import PilotParams
 from ratslam_core import ExperienceMap, Pose2
-from ratslam_core.extensions.evidence import HEADING, ODDS, SUBMAP, X, Y
+from ratslam_core.extensions.evidence import HEADING, ODDS, PRIOR, SUBMAP, X, Y
 
 AHEAD_M = 0.8  # along the old way it heads for what is so far from where it may be
 
@@ -26,6 +27,8 @@ def active_aim(experiences: ExperienceMap, p: PilotParams) -> tuple[float, float
     if not experiences.carried or not len(rows):
         return None
     row = rows[np.argmax(rows[:, ODDS])]
+    if row[ODDS] < PRIOR:  # more has spoken against it than for it
+        return None
     robot = Pose2(float(row[X]), float(row[Y]), float(row[HEADING]))
     ways = experiences.submap_of[: experiences.evidence.known] == row[SUBMAP]
     poses = experiences.poses[: len(ways)]

@@ -10,6 +10,7 @@ import pytest
 from app.pilot.active_localisation import active_aim
 from app.pilot.params import PilotParams
 from ratslam_core import Pose2
+from ratslam_core.extensions.evidence import PRIOR
 
 from .worlds import HandMadeMap
 
@@ -82,7 +83,10 @@ def test_it_acts_on_the_likeliest_hypothesis_whose_submap_alone_counts() -> None
 
 
 def test_who_was_not_carried_or_may_be_anywhere_goes_on_exploring() -> None:
+    """And whose likeliest hypothesis has lost by what was seen: else, on new ground, it drove along ways that are not there."""
     map_ = a_map((0.0, 0.0, 0.0))
+    assert aim(map_) is None
+    suppose(map_, (1.0, 0.5, 0.0, PRIOR - 0.1))
     assert aim(map_) is None
     suppose(map_, (1.0, 0.5, 0.0, 0.0))
     assert aim(map_) is not None

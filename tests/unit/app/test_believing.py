@@ -54,5 +54,5 @@ def test_who_believes_is_not_lost_and_what_is_made_is_of_the_submap() -> None:
             assert session.evaluation.births(len(map_))[map_.here, 3] == session.time_s
     assert min(believed, made) >= 5
     assert np.array_equal(session.evaluation.births(known), births, equal_nan=True)
-    assert not is_lost(session)
+    assert not session.brain.lost
     assert [event.kind for event in history.log.events].count("lost") == 1  # however often the belief changes
