@@ -68,7 +68,9 @@ def test_what_was_made_next_but_elsewhere_is_not_where_the_way_goes_on() -> None
     """From the end of the first way the robot drove on over known ground, where it made nothing, and then far away."""
     map_ = a_map((0.0, 0.0, 0.0), (6.0, 40.0, 0.0))
     suppose(map_, (5.8, 0.0, 0.0, 0.0))
-    assert np.allclose(aim(map_), (0.8, 0.0), atol=0.21)
+    ahead = aim(map_)
+    assert ahead is not None
+    assert np.allclose(ahead, (0.8, 0.0), atol=0.21)
 
 
 def test_it_acts_on_the_likeliest_hypothesis_whose_submap_alone_counts() -> None:
