@@ -31,7 +31,7 @@ from numpy.typing import NDArray
 from app.config import Config
 from app.session import Session
 from ratslam_core.extensions.evidence import LIKE, LIKENESS, ODDS, RINGS, nats
-from ratslam_core.types import Pose2
+from ratslam_core.types import Pose2, wrap_angles
 from sim2d import load_world, world_names
 
 WORLDS = ("office", "living", "campus", "corridors", "two-goals", "twins")
@@ -127,7 +127,7 @@ class _Looking:
         self._usual = max(float(np.partition(self._apart, len(self._apart) // 10)[len(self._apart) // 10]), 1e-9)
 
     def rings(self, x: float, y: float, heading: float) -> list[float]:
-        turn = np.remainder(heading - self._births[:, 2] + math.pi, 2 * math.pi) - math.pi
+        turn = wrap_angles(heading - self._births[:, 2])
         away = np.hypot(self._births[:, 0] - x, self._births[:, 1] - y)
         found: list[float] = []
         for near_m, near_rad in RINGS:

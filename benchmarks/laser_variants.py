@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from app.recordings.formats.sensed import Rates
 from app.recordings.recording import About, Moment, Recording, Wanted, every
+from ratslam_core import wrap_angles
 
 Array = NDArray[np.float64]
 DT = 0.1  # of a first moment, s
@@ -112,7 +113,7 @@ def with_wheels(
 ) -> Log:
     """Wheels with more errors: ways and turns times a factor, rad/s while they turn, and noise as a share of ways and turns."""
     rng, steps = np.random.default_rng(seed), np.diff(log.wheels, axis=0)
-    turn = np.remainder(steps[:, 2] + math.pi, math.tau) - math.pi
+    turn = wrap_angles(steps[:, 2])
     middle = log.wheels[:-1, 2] + turn / 2
     way = steps[:, 0] * np.cos(middle) + steps[:, 1] * np.sin(middle)
     dt = np.minimum(np.diff(log.times), 5.0)  # a pause is no drive

@@ -25,6 +25,7 @@ from app.recordings.recording import Recording
 from app.recordings.scans import ScanRules
 from benchmarks.laser_drives import OF_OURS, OF_OURS_HELD_OUT, driven
 from benchmarks.laser_variants import OF_A_LOG, OF_A_LOG_HELD_OUT, Log, Logged, log_of
+from ratslam_core import wrap_angles
 from sim2d.importers.import_world import open_world
 
 KNOWN_S = 1.0  # a moment so near to a scan has a known pose
@@ -129,7 +130,7 @@ def relations(path: NDArray[np.float64], times: NDArray[np.float64], raw: NDArra
     a, b = at(raw[:, 0]), at(raw[:, 1])
     c, s, d = np.cos(a[:, 2]), np.sin(a[:, 2]), b - a
     off = np.hypot(c * d[:, 0] + s * d[:, 1] - raw[:, 2], -s * d[:, 0] + c * d[:, 1] - raw[:, 3])
-    turn = np.remainder(d[:, 2] - raw[:, 7] + math.pi, math.tau) - math.pi
+    turn = wrap_angles(d[:, 2] - raw[:, 7])
     return float(off.mean()), math.degrees(float(np.abs(turn).mean()))
 
 

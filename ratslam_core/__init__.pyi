@@ -19,7 +19,7 @@ from .params import (
 from .pose_cells.network import PoseCells
 from .pose_graph.transitions import Link
 from .slam import RatSlam
-from .types import Estimate, Odometry, Packet, Pose2, Recognition, wrap_angle
+from .types import Estimate, Odometry, Packet, Pose2, Recognition, wrap_angle, wrap_angles
 
 __all__ = [
     "CellsOnly",
@@ -56,4 +56,5 @@ __all__ = [
     "save_brain",
     "take_snapshot",
     "wrap_angle",
+    "wrap_angles",
 ]

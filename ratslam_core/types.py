@@ -5,6 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+import numpy as np
+from numpy.typing import NDArray
+
 from disk import kind
 
 
@@ -12,6 +15,11 @@ def wrap_angle(angle_rad: float) -> float:
     """The same direction in (-pi, pi]."""
     wrapped = math.remainder(angle_rad, 2 * math.pi)
     return math.pi if wrapped == -math.pi else wrapped
+
+
+def wrap_angles(angles_rad: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The same directions, between -pi and pi."""
+    return np.remainder(angles_rad + math.pi, 2 * math.pi) - math.pi
 
 
 def require_finite(name: str, value: float) -> float:

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.pilot.params import PilotParams
-from ratslam_core import ExperienceMap, Pose2
+from ratslam_core import ExperienceMap, Pose2, wrap_angles
 from ratslam_core.extensions.evidence import HEADING, ODDS, PRIOR, SUBMAP, X, Y
 
 AHEAD_M = 0.8  # along the old way it heads for what is so far from where it may be
@@ -33,7 +33,7 @@ def active_aim(experiences: ExperienceMap, p: PilotParams) -> tuple[float, float
     ways = experiences.submap_of[: experiences.evidence.known] == row[SUBMAP]
     poses = experiences.poses[: len(ways)]
     away = np.hypot(poses[:, 0] - robot.x, poses[:, 1] - robot.y)
-    turn = np.abs(np.remainder(poses[:, 2] - robot.heading_rad + math.pi, 2 * math.pi) - math.pi)
+    turn = np.abs(wrap_angles(poses[:, 2] - robot.heading_rad))
     nearest = int(np.argmin(np.where(ways, away / p.cruise_speed + turn / p.turn_rate, np.inf)))
     ahead = _ahead(nearest, poses, ways, away)
     point = Pose2(*poses[ahead].tolist()).compose(Pose2(max(0.0, AHEAD_M - float(away[ahead])), 0.0, 0.0))

@@ -26,7 +26,7 @@ from app.pilot.local_movement import LocalMovement
 from app.pilot.params import PilotParams
 from app.pilot.route_following import RouteFollower
 from disk import kind
-from ratslam_core import ExperienceMap, Odometry, Pose2
+from ratslam_core import ExperienceMap, Odometry, Pose2, wrap_angles
 
 TRIP_SLOW, TRIP_MORE_S = 1.5, 60.0  # a trip may take so many times what its links say, and this time more
 CHOOSE_S = 5.0  # while it wanders, it looks for something new as often ...
@@ -201,7 +201,7 @@ class Seeker:
         near = np.hypot(poses[rows, 0] - robot.x, poses[rows, 1] - robot.y) < PLACE_REACH_M
         begin = np.where(near[:, None], (robot.x, robot.y), poses[rows, :2])
         leg_s = np.hypot(*(places - begin).T) / p.cruise_speed
-        bearing = wrapped(np.arctan2(places[:, 1] - robot.y, places[:, 0] - robot.x) - robot.heading_rad)
+        bearing = wrap_angles(np.arctan2(places[:, 1] - robot.y, places[:, 0] - robot.x) - robot.heading_rad)
         cost = leg_s + np.where(near, np.abs(bearing) / p.turn_rate, times[rows])
         if _searching(experiences):
             x, y = poses[np.argmax(experiences.submap_of == experiences.submap_of[experiences.active]), :2]
@@ -295,9 +295,9 @@ class LoopCloser:
         dx, dy = poses[:, 0] - robot.x, poses[:, 1] - robot.y
         away, way = np.hypot(dx, dy), times * p.cruise_speed
         near = np.flatnonzero((away < p.loop_share * np.minimum(way, LOOP_MOST_M)) & (way > LOOP_M))
-        turn = np.abs(wrapped(poses[near, 2] - robot.heading_rad))
+        turn = np.abs(wrap_angles(poses[near, 2] - robot.heading_rad))
         near = near[np.argsort(away[near] / p.cruise_speed + turn / p.turn_rate, kind="stable")]
-        bearing = wrapped(np.arctan2(dy[near], dx[near]) - robot.heading_rad)
+        bearing = wrap_angles(np.arctan2(dy[near], dx[near]) - robot.heading_rad)
         beams = np.argmin(np.abs(self._angles - bearing[:, None]), axis=1)
         seen = ranges_m[beams] >= np.minimum(away[near], FAR_M + OPENING_GAP_M)
         for row in near[seen & (np.abs(bearing) <= abs(self._angles[0]))].tolist():
@@ -356,8 +356,3 @@ def _road(poses: _Array, start: int) -> list[int]:
         road.append(int(on[np.argmin(np.abs(aside[on]))]))
         way += float(ahead[road[-1]])
     return road
-
-
-def wrapped(angles: _Array) -> _Array:
-    """Angles (rad) between -pi and pi."""
-    return np.remainder(angles + math.pi, 2 * math.pi) - math.pi

@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 
 from app.recordings.recording import About
 from disk import kind
-from ratslam_core import ExperienceMap, Odometry, Pose2, wrap_angle
+from ratslam_core import ExperienceMap, Odometry, Pose2, wrap_angle, wrap_angles
 
 
 @kind("scan rules/1")
@@ -382,7 +382,7 @@ class ScanTies:
         """The old experiences nearest to the new one in the map that look about the same way."""
         poses, here = map_.poses[: max(new - RECENT, 0)], map_.pose(new)
         away = np.hypot(poses[:, 0] - here.x, poses[:, 1] - here.y)
-        turned = np.abs(np.remainder(poses[:, 2] - here.heading_rad + math.pi, math.tau) - math.pi)
+        turned = np.abs(wrap_angles(poses[:, 2] - here.heading_rad))
         reach = min(max(REACH_M, 3 * map_.pose_filter.sigma_m), MOST_REACH_M)
         near = np.flatnonzero((away < reach) & (turned < TURNED_RAD))
         nearest = near[np.argsort(away[near], kind="stable")][:TRIED]

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.session import Session
-from ratslam_core import CellsOnly, ExperienceMap, Pose2
+from ratslam_core import CellsOnly, ExperienceMap, Pose2, wrap_angles
 from ratslam_core.extensions.evidence import HEADING, ODDS, SUBMAP, X, Y
 from web.messages import Belief, Hypothesis, Spread
 
@@ -143,7 +143,7 @@ class HypothesisHistory:
         at, odds = np.array([place.x, place.y, place.heading_rad]), list[tuple[float, float]]()
         for time_s, rows in reversed(self._kept):
             off = np.hypot(rows[:, 0] - at[0], rows[:, 1] - at[1])
-            turn = np.abs(np.remainder(rows[:, 2] - at[2] + math.pi, 2 * math.pi) - math.pi)
+            turn = np.abs(wrap_angles(rows[:, 2] - at[2]))
             near = np.flatnonzero((off < SAME_M) & (turn < SAME_RAD))
             if not len(near):
                 break

@@ -29,7 +29,7 @@ from numpy.typing import NDArray
 
 from disk import kind
 from ratslam_core.params import EvidenceParams
-from ratslam_core.types import Odometry, Pose2, wrap_angle
+from ratslam_core.types import Odometry, Pose2, wrap_angle, wrap_angles
 
 Rows = NDArray[np.float64]
 Whole = NDArray[np.int64]
@@ -239,7 +239,7 @@ class Evidence:
     def _here(self, robot: Pose2) -> NDArray[np.bool_]:
         """Which hypotheses are where a robot in doubt is mapping, since a map is a little off."""
         rows = self.hypotheses
-        turn = np.abs(np.remainder(rows[:, HEADING] - robot.heading_rad + math.pi, 2 * math.pi) - math.pi)
+        turn = np.abs(wrap_angles(rows[:, HEADING] - robot.heading_rad))
         return (np.hypot(rows[:, X] - robot.x, rows[:, Y] - robot.y) < HERE * self.cell_m) & (turn < HERE_RAD)
 
     @property

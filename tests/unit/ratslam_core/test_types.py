@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from disk.parameter import check_ranges, param
-from ratslam_core import ExperienceMapParams, LocalViewParams, Odometry, Pose2, PoseCellParams, wrap_angle
+from ratslam_core import ExperienceMapParams, LocalViewParams, Odometry, Pose2, PoseCellParams, wrap_angle, wrap_angles
 
 places = st.floats(-50, 50)
 poses = st.builds(Pose2, places, places, st.floats(-math.pi, math.pi).map(wrap_angle))
@@ -26,6 +26,9 @@ def test_wrapping_keeps_the_direction_in_half_open_range(angle: float) -> None:
     assert -math.pi < wrap_angle(angle) <= math.pi
     assert math.cos(wrap_angle(angle) - angle) == pytest.approx(1.0, abs=1e-9)
     assert wrap_angle(-math.pi) == math.pi == wrap_angle(math.pi) == wrap_angle(3 * math.pi)
+    many = wrap_angles(np.array([angle, -math.pi, math.pi]))
+    assert np.all(np.abs(many) <= math.pi)
+    assert math.cos(many[0] - angle) == pytest.approx(1.0, abs=1e-9)
 
 
 @given(poses, poses, poses)
