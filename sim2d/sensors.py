@@ -19,10 +19,9 @@ from sim2d.world.world import World
 Pose = tuple[float, float, float]  # x, y (m), heading (rad)
 _OWNERS = ("image", "sonar", "odometry", "pose", "noise bank", "actors", "echo", "laser")
 BUMPER_M = 0.005  # travel of the contact ring around the robot
-_SCENE_CELL_M, _SCENE_SECTOR_RAD = (
-    0.5,
-    math.radians(30),
-)  # the floor and headings of one scene number: our guess
+# The floor and headings of one scene number. ACRA 2006 tells neither: a pose cell is 10 degrees wide, and its section 7 has
+# several scenes for a place where matching is sensitive.
+_SCENE_CELL_M, _SCENE_SECTOR_RAD = 0.5, math.radians(10)
 _STILL_SPEED, _STILL_YAW_RATE = 1e-3, 2e-3  # m/s, rad/s: a robot slower than both gives no counts
 _NOISE_S = 0.1  # `odometry_noise` is that of a movement of so long
 

@@ -18,11 +18,16 @@ _ALSO_OFF: dict[str, Value] = {
     "experience_map.shortcut_m": 0.0,
 }
 _PLAIN: dict[str, Value] = {name: value for addition in ADDITIONS for name, value in addition.off.items()} | _ALSO_OFF
-# B to D. Equations B12-14 and D7 diverge unless their sums are divided by the number of links. Three readings are the
+# B to D. Equations B12-14 and D7 diverge unless their sums are divided by the number of links. Nobody tells how large the zone
+# of an experience is: of one cell and layer, an eighth of two, come an eighth of the false closures. Three readings are the
 # defaults: in D5, experience j lies where it is relative to experience i itself, not to where the robot entered its zone;
 # nobody tells the activity of an active local view cell, which is a tenth, at the learning rate of 0.15; and a link saturates
 # so that a single observation moves no packet, as D's table demands. docs/findings.md has each with and without it.
-_READ: dict[str, Value] = {"experience_map.sweep": "by experience"}
+_READ: dict[str, Value] = {
+    "experience_map.sweep": "by experience",
+    "experience_map.zone_xy": 1.0,
+    "experience_map.zone_theta": 1.0,
+}
 _PAPERS: dict[str, dict[str, Value]] = {
     # A: pose cells and local view; the map is the cells' own plane.
     "paper-2004": {

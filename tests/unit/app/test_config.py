@@ -165,5 +165,5 @@ def test_a_value_from_the_command_line(subtests: pytest.Subtests) -> None:
 
 def test_a_paper_s_pilot_only_wanders_and_ours_comes_back() -> None:
     paper = preset("paper-2006", Config())
-    assert (paper.pilot.seek, paper.pilot.bar_fade_s, paper.pilot.approach_m, paper.pilot.gap_m) == (False, 0, 0, 0)
+    assert (paper.pilot.seek, paper.pilot.bar_fade_s, paper.pilot.approach_m) == (False, 0, 0)
     assert preset("ours", paper).pilot == Config().pilot
