@@ -161,9 +161,9 @@ SERIES_POINTS = 600
 ERROR_POINTS = 1000
 
 
-@kind("run_series/1")
+@kind("run_series/2")
 class RunSeries:
-    """Errors and counts over time, and the turn of the map. The longer the run, the less often they are sampled.
+    """Errors, explored floor and counts over time, and the turn of the map. The longer the run, the less often they are sampled.
 
     Call `watch` after each tick.
     """
@@ -172,7 +172,7 @@ class RunSeries:
 
     def __init__(self, session: Session) -> None:
         self._session = session
-        self._samples: NDArray[np.float64] = np.zeros((0, 7))
+        self._samples: NDArray[np.float64] = np.zeros((0, 8))
         self._sample_every_s = 1.0
         self.error_map_m: float | None = None  # None without truth
         self.error_odometry_m: float | None = None
@@ -209,9 +209,10 @@ class RunSeries:
         if session.source.worlds:
             self.coverage = self._covered.follow(session.simulator.free_space, session.evaluation.path)
         self.map_turn_rad = self._turn(self.map_turn_rad)
+        explored = math.nan if self.coverage is None else 100 * self.coverage
         views, experiences = len(brain.local_view), len(brain.experience_map)
         metres, radians = brain.experience_map.residual
-        sample = session.time_s, *errors, views, experiences, 1000 * metres, 1000 * radians
+        sample = session.time_s, *errors, explored, views, experiences, 1000 * metres, 1000 * radians
         self._samples = np.vstack([self._samples, sample])
         if len(self._samples) > SERIES_POINTS:
             self._samples = self._samples[::2]

@@ -70,6 +70,7 @@ def series_until(second: int) -> Series:
         time_s=frozen(time_s),
         map_error_m=frozen(0.22 + 0.05 * np.sin(time_s / 9)),
         odometry_error_m=frozen(0.2 + 0.005 * time_s),
+        explored_percent=frozen(np.minimum(100.0, time_s / 6)),
         views=frozen(600 * (1 - np.exp(-time_s / 90))),
         experiences=frozen(NODES * (1 - np.exp(-time_s / 120))),
         residual_mm=frozen(3 + np.sin(time_s / 7)),

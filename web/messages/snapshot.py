@@ -342,6 +342,7 @@ class Series:
     time_s: NDArray[np.float64]
     map_error_m: NDArray[np.float64]
     odometry_error_m: NDArray[np.float64]
+    explored_percent: NDArray[np.float64]  # of the floor, within a metre of the path; NaN without an office
     views: NDArray[np.float64]
     experiences: NDArray[np.float64]
     residual_mm: NDArray[np.float64]  # by how much links and map disagree, root mean square

@@ -5,6 +5,7 @@ in this world, one switch each, the robot's presets, and the places that people 
 from __future__ import annotations
 
 import math
+from dataclasses import fields
 
 import numpy as np
 
@@ -12,7 +13,7 @@ from web.messages import LivingLayer, Parameter, Series, Snapshot, TaggedPlace
 from web.panel.part import Content, counted, number, table
 from web.panel.tune import knob
 
-COLUMNS = ("time_s", "map_error_m", "odometry_error_m", "views", "experiences", "residual_mm", "residual_mrad")
+COLUMNS = tuple(field.name for field in fields(Series))
 NOTHING = "No people, doors, lamps, boxes or script here. The pencil above draws some."
 MOST = 40  # switches of one kind; beyond that, click on the door itself
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 from copy import deepcopy
+from dataclasses import astuple
 
 import numpy as np
 import pytest
@@ -76,7 +77,9 @@ def test_snapshots_are_immutable_and_their_rows_agree(with_goal: bool) -> None:
     assert activity[tuple(cells.cells[0])] == cells.activity[0] == activity.max()
     assert (cells.total, cells.least > 0) == (pytest.approx(1, abs=1e-5), True)
     series, world = now.series, now.world
-    assert len({*map(len, (series.time_s, series.map_error_m, series.views, series.experiences))}) == 1
+    assert len({*map(len, astuple(series))}) == 1
+    assert now.coverage is not None
+    assert series.explored_percent[-1] == 100 * now.coverage > 0
     assert world is not None
     assert len(world.walls) == len(world.wall_height_m) == len(world.wall_kind)
     assert (now.goal is not None) is with_goal

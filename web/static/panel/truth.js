@@ -97,6 +97,11 @@ export class TruthTab {
       ],
       170,
     );
+    this.explored = new Plot(
+      "Explored floor against time",
+      [{ label: "explored (%)", digits: 0, colour: "packet-2" }],
+      120,
+    );
     this.counts = new Plot(
       "Views and experiences against time",
       [
@@ -113,6 +118,7 @@ export class TruthTab {
       ],
       150,
     );
+    this.floor = make("div", {}, heading("Explored"), this.explored.box);
     this.words = heading("Map correction");
     const why = note("After a loop closure links and map disagree: correction spreads the error.");
     this.box = make(
@@ -122,6 +128,7 @@ export class TruthTab {
       this.switches.box,
       this.table.box,
       this.errors.box,
+      this.floor,
       heading("Stored"),
       this.counts.box,
       this.words,
@@ -136,13 +143,16 @@ export class TruthTab {
     say(this.words, `Map correction: a residual of ${residual}`);
     const of = (/** @type {string} */ name) => arrays[name].values;
     this.errors.show([of("time_s"), of("map_error_m"), of("odometry_error_m")]);
+    const explored = of("explored_percent");
+    this.floor.hidden = Number.isNaN(explored[explored.length - 1]); // a recording has no office
+    this.explored.show([of("time_s"), explored]);
     this.counts.show([of("time_s"), of("views"), of("experiences")]);
     this.residual.show([of("time_s"), of("residual_mm"), of("residual_mrad")]);
   }
 
   /** Draws the plots anew after a change of theme. */
   recolour() {
-    for (const plot of [this.errors, this.counts, this.residual]) if (plot.plot) plot.build();
+    for (const plot of [this.errors, this.explored, this.counts, this.residual]) if (plot.plot) plot.build();
   }
 
   get parts() {
