@@ -93,7 +93,7 @@ export class Speaker {
  * Map frame, metres. `seconds`: the quickest way; null: none is known.
  * @typedef {{ name: string, experience: number, x: number, y: number }} TagPlace
  * @typedef {{ id: number, x: number, y: number, seconds: number | null }} ExperiencePlace
- * `why`: why a place of the office cannot be gone to; null: it can.
+ * `why`: why the map knows no way to a place of the office; null: it does.
  * @typedef {{ name: string, experience: number | null, x: number | null, y: number | null, why: string | null }} NamedPlace
  * @typedef {{ robot: Pose, to_goal: boolean, tags: TagPlace[], named: NamedPlace[], experiences: ExperiencePlace[] }} Places
  * @typedef {{ tag: string | null, experience: number, x: number, y: number, title: string, where: string, why?: string | null }} Choice
@@ -169,7 +169,7 @@ export class PlaceList {
     $("places-typed").addEventListener("input", () => this.draw());
     $("places-form").addEventListener("submit", (event) => {
       event.preventDefault();
-      const first = this.found.find(({ why }) => !why);
+      const [first] = this.found;
       if (first) this.go(first);
     });
   }
@@ -213,22 +213,27 @@ export class PlaceList {
       make("b", { textContent: choice.title }),
       ` ${choice.where}`,
     );
+    go.addEventListener("click", () => this.go(choice));
     if (choice.why) {
-      go.setAttribute("aria-disabled", "true"); // so that the keyboard comes to it, and the reason is read
-      go.setAttribute("aria-label", `${choice.title} cannot be gone to: ${choice.why}`);
+      go.classList.add("unknown");
+      go.setAttribute("aria-label", `Explore until it comes to ${choice.title}: ${choice.why}`);
       return make("li", {}, go);
     }
     go.setAttribute("aria-label", `Go to ${choice.title}, ${choice.where}`);
-    go.addEventListener("click", () => this.go(choice));
     const look = make("button", { type: "button", textContent: "Inspect" });
     look.setAttribute("aria-label", `Inspect ${choice.title}`);
     look.addEventListener("click", () => this.look(choice));
     return make("li", {}, go, look);
   }
 
-  /** @param {Choice} choice */
-  async go({ tag, x, y, title }) {
+  /** There by the map; to a place that the map does not know by exploring until the robot comes there. @param {Choice} choice */
+  async go({ tag, x, y, title, why }) {
     this.dialog.close();
+    if (why) {
+      if (await this.command({ type: "set_mode", mode: "explore" }))
+        await this.command({ type: "run_until", what: "place", place: title });
+      return;
+    }
     await this.command(
       tag === null ? { type: "set_goal", x, y } : { type: "go_to_tag", name: tag },
       `On the way to ${title}.`,
