@@ -49,6 +49,7 @@ def page_of(material: Material, drawn: list[Drawn], command: str, failed: list[S
     figures = [
         {
             "title": each.spec.title,
+            "paper": each.spec.paper,
             "svg": Markup(inlined(svg_of(each.figure), f"f{n}", titles, each.spec.title or each.spec.kind)),
             "caption": each.caption,
         }

@@ -177,7 +177,7 @@ def _section(experiment: Experiment, run: Mapping[str, Any]) -> str:
 Asked: {experiment.asks}
 
 The paper found: {experiment.found}
-{_picture(experiment)}
+{_picture(experiment)}{_beside(experiment)}
 {says}
 
 {_table(experiment, cells)}
@@ -192,6 +192,12 @@ def _picture(experiment: Experiment) -> str:
             title = experiment.figures[0].title if experiment.figures else experiment.title
             return f"\n![{title}]({name})\n"
     return ""
+
+
+def _beside(experiment: Experiment) -> str:
+    """The paper's figures and ours, axis by axis. All but the first of ours are on the experiment's own page."""
+    told = [f"| {figure.title} | {figure.paper} |" for figure in experiment.figures if figure.paper]
+    return "\n".join(["", "| figure | beside the paper's |", "| --- | --- |", *told, ""]) if told else ""
 
 
 def _table(experiment: Experiment, cells: list[CellSummary]) -> str:

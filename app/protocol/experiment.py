@@ -108,10 +108,14 @@ class Claim(Part):
 
 
 class FigureSpec(Part):
-    """A figure. What each kind shows, and its options: figure_options.py."""
+    """A figure. What each kind shows, and its options: figure_options.py.
+
+    paper: the figure of the paper that it stands beside, axis by axis.
+    """
 
     kind: Line
     title: Annotated[str, Field(max_length=160), AfterValidator(one_line)] = ""
+    paper: Annotated[str, Field(max_length=400), AfterValidator(one_line)] = ""
     options: dict[str, Any] = {}
 
 
