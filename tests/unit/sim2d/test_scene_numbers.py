@@ -32,5 +32,5 @@ def test_sectors_that_do_not_fit_become_narrower() -> None:
 def test_a_robot_that_turns_sees_one_number_after_the_other() -> None:
     simulator = Simulator(load_world("office"), SimParams(), 0)
     seen = [simulator.observe().scene, *(simulator.step(Drive(0.0, 1.0)).scene for _ in range(90))]
-    assert len(set(seen)) == 12
-    assert sum(a != b for a, b in pairwise(seen)) == 17  # in 9 rad
+    assert len(set(seen)) == 36
+    assert sum(a != b for a, b in pairwise(seen)) == 51  # in 9 rad
