@@ -21,8 +21,8 @@ from ratslam_core.extensions.evidence import HEADING, ODDS, PRIOR, SUBMAP, X, Y
 AHEAD_M = 0.8  # along the old way it heads for what is so far from where it may be
 
 
-def supposed_way(experiences: ExperienceMap, p: PilotParams) -> tuple[Pose2, Pose2] | None:
-    """Where the robot most likely is, and where it heads for if it is there, map frame; None: not carried, or anywhere."""
+def active_aim(experiences: ExperienceMap, p: PilotParams) -> tuple[float, float] | None:
+    """The next point to head for, metres in the robot's frame; None: it was not carried, or may be anywhere."""
     rows = experiences.evidence.hypotheses
     if not experiences.carried or not len(rows):
         return None
@@ -36,7 +36,9 @@ def supposed_way(experiences: ExperienceMap, p: PilotParams) -> tuple[Pose2, Pos
     turn = np.abs(wrap_angles(poses[:, 2] - robot.heading_rad))
     nearest = int(np.argmin(np.where(ways, away / p.cruise_speed + turn / p.turn_rate, np.inf)))
     ahead = _ahead(nearest, poses, ways, away)
-    return robot, Pose2(*poses[ahead].tolist()).compose(Pose2(max(0.0, AHEAD_M - float(away[ahead])), 0.0, 0.0))
+    point = Pose2(*poses[ahead].tolist()).compose(Pose2(max(0.0, AHEAD_M - float(away[ahead])), 0.0, 0.0))
+    here = robot.inverse().compose(point)
+    return here.x, here.y
 
 
 def _ahead(experience: int, poses: NDArray[np.float64], ways: NDArray[np.bool_], away: NDArray[np.float64]) -> int:

@@ -9,7 +9,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from app.pilot.active_localisation import supposed_way
+from app.pilot.active_localisation import active_aim
 from app.pilot.bars import Bars
 from app.pilot.behaviours import Behaviour
 from app.pilot.explore import Explorer
@@ -95,10 +95,7 @@ class Pilot:
         return self.mode == "explore" and self._seeker.explored
 
     def trip(self, experiences: ExperienceMap) -> tuple[tuple[float, float], str, NDArray[np.float64]] | None:
-        """While it explores on purpose or finds out where it is: where to, m, map frame; why, in words; and all openings
-        (k, 2) that it knew of."""
-        if self.behaviour is Behaviour.LOCALISING and (way := supposed_way(experiences, self.params)) is not None:
-            return (way[1].x, way[1].y), "to see whether it is here", np.zeros((0, 2))
+        """While it explores on purpose: where to, m, map frame; why, in words; and all openings (k, 2) that it knew of."""
         target = self._seeker.target(experiences) if self.mode == "explore" else None
         return None if target is None else (target, self._seeker.reason, self._seeker.openings)
 
@@ -198,12 +195,11 @@ class Pilot:
         self, ranges_m: NDArray[np.float32], odometry: Odometry, experiences: ExperienceMap
     ) -> tuple[float, float] | None:
         """The drive on a trip of its own choice. None: it wanders, or turns back to look."""
-        way = supposed_way(experiences, self.params) if self.params.seek else None
-        if way is not None:
+        aim = active_aim(experiences, self.params) if self.params.seek else None
+        if aim is not None:
             self._seeker.stop()
             self.behaviour = Behaviour.LOCALISING
-            point = way[0].inverse().compose(way[1])
-            return self._towards((point.x, point.y))
+            return self._towards(aim)
         if self._seeker.on_new_ground:
             if self._explorer.doing is not Behaviour.LOOKING_BACK:
                 self._explorer.travel(abs(odometry.speed * odometry.dt), self.params)

@@ -7,13 +7,10 @@ import math
 import numpy as np
 import pytest
 
-from app.pilot import Pilot
-from app.pilot.active_localisation import supposed_way
-from app.pilot.behaviours import Behaviour
+from app.pilot.active_localisation import active_aim
 from app.pilot.params import PilotParams
-from ratslam_core import Odometry, Pose2
+from ratslam_core import Pose2
 from ratslam_core.extensions.evidence import PRIOR
-from sim2d import SONAR_ANGLES_RAD
 
 from .worlds import HandMadeMap
 
@@ -38,11 +35,7 @@ def suppose(map_: HandMadeMap, *hypotheses: tuple[float, float, float, float]) -
 
 
 def aim(map_: HandMadeMap) -> tuple[float, float] | None:
-    way = supposed_way(map_, USUAL)  # type: ignore[arg-type]
-    if way is None:
-        return None
-    point = way[0].inverse().compose(way[1])
-    return point.x, point.y
+    return active_aim(map_, USUAL)  # type: ignore[arg-type]
 
 
 def drive(map_: HandMadeMap, x: float, y: float, heading: float, way_m: float) -> Pose2:
@@ -101,16 +94,3 @@ def test_who_was_not_carried_or_may_be_anywhere_goes_on_exploring() -> None:
     assert aim(map_) is not None
     map_.carried = False
     assert aim(map_) is None
-
-
-def test_where_it_drives_to_find_out_is_told() -> None:
-    map_ = a_map((0.0, 0.0, 0.0))
-    suppose(map_, (1.0, 0.5, 0.0, 0.0))
-    pilot = Pilot(USUAL, np.array(SONAR_ANGLES_RAD), np.random.default_rng(1))
-    pilot.step(np.full(8, 5.0, np.float32), False, Odometry(0.3, 0.0, 0.1), map_)  # type: ignore[arg-type]
-    trip = pilot.trip(map_)  # type: ignore[arg-type]
-    assert pilot.behaviour is Behaviour.LOCALISING
-    assert trip is not None
-    assert (trip[0][1], trip[1]) == (0.0, "to see whether it is here")  # on the old way
-    map_.carried = False
-    assert pilot.trip(map_) is None  # type: ignore[arg-type]
