@@ -46,11 +46,12 @@ ROBOTS: dict[str, dict[str, Value]] = {
     },
 }
 # What the pilot adds, switched off: it only wanders (IROS 2005 IV.D), bars stay and links are deleted (ACRA 2006 3.4), and
-# the robot drives along the route to its end. Its obstacle avoidance stays: the papers' robots had one, and none is described.
+# the robot drives along the route to its end. Obstacle avoidance stays on: IROS 2005 IV.D has one and does not describe it, the others do not say.
 _PLAIN_PILOT: dict[str, Value] = {
     "pilot.seek": False,
     "pilot.bar_fade_s": 0.0,
     "pilot.approach_m": 0.0,
+    "pilot.gap_m": Config().pilot.gap_m,
 }
 _OUR_PILOT: dict[str, Value] = {name: value for name, _, value in Config().items() if name in _PLAIN_PILOT}
 _WITH_PILOT: dict[str, dict[str, Value]] = {

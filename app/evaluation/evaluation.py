@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from app.evaluation.agreement import alignment, rmse, steady_alignment
 from disk import kind
-from ratslam_core import CellsOnly, ExperienceMap, Odometry, Pose2
+from ratslam_core import CellsOnly, ExperienceMap, Odometry, Pose2, wrap_angles
 from sim2d import Truth
 
 REVISIT_AGE_S = 20.0  # an active experience that was made longer ago than this counts as revisited
@@ -238,7 +238,7 @@ def off_earlier_passes(
     apart = np.hypot(true[:, 0] - here.x, true[:, 1] - here.y)
     away = np.flatnonzero(apart > AWAY_M)
     passed = slice(0, away[-1] if len(away) else 0)
-    turned = np.abs(np.remainder(true[passed, 2] - here.heading_rad + np.pi, 2 * np.pi) - np.pi)
+    turned = np.abs(wrap_angles(true[passed, 2] - here.heading_rad))
     passes = np.flatnonzero((apart[passed] < HERE_M) & (turned < HERE_RAD))
     if not len(passes):
         return math.nan, math.nan
@@ -260,7 +260,7 @@ def off_same_estimate(
     was nearest to what it is now. NaN where it never was near. true, estimated: as for `off_earlier_passes`.
     """
     apart = np.hypot(estimated[:, 0] - estimate.x, estimated[:, 1] - estimate.y)
-    turned = np.abs(np.remainder(estimated[:, 2] - estimate.heading_rad + np.pi, 2 * np.pi) - np.pi)
+    turned = np.abs(wrap_angles(estimated[:, 2] - estimate.heading_rad))
     alike = np.flatnonzero((apart < HERE_M) & (turned < HERE_RAD))
     if not len(alike):
         return math.nan, math.nan

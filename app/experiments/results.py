@@ -196,8 +196,8 @@ def _picture(experiment: Experiment) -> str:
 
 def _beside(experiment: Experiment) -> str:
     """The paper's figures and ours, axis by axis. All but the first of ours are on the experiment's own page."""
-    told = [f"| {figure.title} | {figure.paper} |" for figure in experiment.figures if figure.paper]
-    return "\n".join(["", "| figure | beside the paper's |", "| --- | --- |", *told, ""]) if told else ""
+    told = [(figure.title, figure.paper) for figure in experiment.figures if figure.paper]
+    return f"\n{_lines([('figure', 'beside the paper'), ('---', '---'), *told])}\n" if told else ""
 
 
 def _table(experiment: Experiment, cells: list[CellSummary]) -> str:

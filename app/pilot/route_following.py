@@ -19,7 +19,7 @@ from app.pilot.bars import WIDEST_BAR_M, Bars, bar_ahead, crosses
 from app.pilot.local_movement import LocalMovement
 from app.pilot.params import PilotParams
 from disk import kind
-from ratslam_core import ExperienceMap, Odometry, Pose2, Route
+from ratslam_core import ExperienceMap, Odometry, Pose2, Route, wrap_angles
 from web.messages import GoalState
 
 GOAL_REACH_M = 1.5  # a goal farther than this from every experience is refused
@@ -285,7 +285,7 @@ class RouteFollower:
         near = near[~self._bars.between(robot.x, robot.y, poses[near, :2])]
         on_route = -1 if self._route is None else int(self._route.experiences[self._at])
         near = np.append(near, active)
-        turn = np.abs(np.remainder(poses[near, 2] - robot.heading_rad + np.pi, 2 * np.pi) - np.pi)
+        turn = np.abs(wrap_angles(poses[near, 2] - robot.heading_rad))
         cost = times[near] + away[near] / NEAR_SPEED + NEAR_TURN_COST * turn
         cost += (NEAR_COST + NEAR_DOUBT_S * self._bars.failures) * ((near != active) & (near != on_route))
         cost -= STAY_S * (near == on_route)

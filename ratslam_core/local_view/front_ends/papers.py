@@ -164,7 +164,7 @@ LARGEST = 2**63 - 1
 NUMBER = slice(0, 8)  # where the number is kept in the features
 
 
-@kind("scene numbers/1")
+@kind("scene numbers/2")
 class SceneNumbers(FrontEnd):
     """Scene numbers given by a simulator, as in the papers' own simulations. ACRA 2005 section 5, ACRA 2006 section 5.1.
 

@@ -152,7 +152,7 @@ function spread(places, from) {
 
 const MOST_ROWS = 60; // rows
 
-/** The places that the robot knows: type, choose, go there or look at it. */
+/** The places of the map and of the office: type, choose, go there or look at it; what the map does not know is looked for. */
 export class PlaceList {
   /**
    * @param {(wish: Command, done?: string) => Promise<boolean>} command
@@ -169,7 +169,7 @@ export class PlaceList {
     $("places-typed").addEventListener("input", () => this.draw());
     $("places-form").addEventListener("submit", (event) => {
       event.preventDefault();
-      const [first] = this.found;
+      const first = this.found.find(({ why }) => !why) ?? this.found[0];
       if (first) this.go(first);
     });
   }
