@@ -46,7 +46,8 @@ ROBOTS: dict[str, dict[str, Value]] = {
     },
 }
 # What the pilot adds, switched off: it only wanders (IROS 2005 IV.D), bars stay and links are deleted (ACRA 2006 3.4), and
-# the robot drives along the route to its end. Obstacle avoidance stays on: IROS 2005 IV.D has one and does not describe it, the others do not say.
+# the robot drives along the route to its end. Obstacle avoidance stays on: IROS 2005 IV.D has one that it does not
+# describe, the others do not say.
 _PLAIN_PILOT: dict[str, Value] = {
     "pilot.seek": False,
     "pilot.bar_fade_s": 0.0,

@@ -12,10 +12,14 @@ const property = (/** @type {string} */ name) =>
 
 /** A plot drawn by uPlot, which is fetched when the first one is made. */
 class Plot {
-  /** @param {string} words @param {Line[]} lines @param {number} height */
-  constructor(words, lines, height) {
+  /**
+   * `most`: where the scale ends that else fits the values.
+   * @param {string} words @param {Line[]} lines @param {number} height @param {number | null} most
+   */
+  constructor(words, lines, height, most = null) {
     this.lines = lines;
     this.height = height;
+    this.most = most;
     this.box = make("div", { className: "plot" });
     this.box.append(saveButtons(words, () => ({ columns: this.data, lines })));
     this.box.setAttribute("role", "group");
@@ -52,7 +56,7 @@ class Plot {
     const options = {
       width: this.box.clientWidth,
       height: this.height,
-      scales: { x: { time: false } }, // seconds, not dates
+      scales: { x: { time: false }, y: this.most === null ? {} : { range: [0, this.most] } }, // seconds, not dates
       axes: [axis, { ...axis, size: 50 }],
       series: [
         {
@@ -100,7 +104,8 @@ export class TruthTab {
     this.explored = new Plot(
       "Explored floor against time",
       [{ label: "explored (%)", digits: 0, colour: "packet-2" }],
-      120,
+      150,
+      100,
     );
     this.counts = new Plot(
       "Views and experiences against time",
