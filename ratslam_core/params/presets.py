@@ -1,4 +1,4 @@
-"""What each paper says and nothing else, as values of parameters: `preset("paper-2006")`. The default is "ours".
+"""The rules of each paper, as values of parameters: `preset("paper-2006")`. The default is "ours".
 
 A value that no paper names, such as a threshold, is the same in all presets. Where a text can be read in several ways or
 does not say, the reading is the one with which its results come out: `_READ`. additions.py and docs/additions.md list

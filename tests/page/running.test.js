@@ -151,7 +151,7 @@ test("a place is chosen from a list by keyboard, and told aloud", () =>
     await becomes("there is none", (now) => now.goal === null);
     page.press("/");
     await page.fill(typed, "library");
-    await page.says("#places-list li", "the robot has not been near it yet");
+    await page.says("#places-list li", "explores until it comes there");
     page.press("Enter"); // it is looked for, which a test need not wait for
     await until("it is chosen", () => !page.shown("#places-dialog"));
     await becomes("it explores until it comes there", (now) => now.until?.words.includes("library"));

@@ -334,7 +334,7 @@ def experience_fields(report: ExperienceReport) -> dict[str, Any]:
 def _named(place: KnownPlace, layer: MapLayer) -> dict[str, Any]:
     """A place of the office by its name. Once the map has something there it can be gone to by it; `why` says why not yet."""
     if place.map_xy is None or not len(layer.ids):
-        why = "the robot has not been near it yet"
+        why = "it has not been near it yet: explores until it comes there"
         return {"name": place.name, "experience": None, "x": None, "y": None, "why": why}
     x, y = place.map_xy
     nearest = int(np.hypot(*(layer.xy - np.array([x, y])).T).argmin())

@@ -85,7 +85,7 @@ const places = {
   to_goal: false,
   tags: [{ name: "the printer", experience: 7, x: 4, y: 1 }],
   named: [
-    { name: "kitchen", experience: null, x: null, y: null, why: "the robot has not been near it yet" },
+    { name: "kitchen", experience: null, x: null, y: null, why: "it has not been near it yet: explores until it comes there" },
     { name: "library", experience: 3, x: 5, y: 1, why: null },
   ],
   experiences: [
@@ -111,7 +111,7 @@ test("named places come first, then the nearest experiences; what is typed is so
   const all = [
     "the printer: 3.0 m to the right",
     "library: 4.0 m to the right",
-    "kitchen: the robot has not been near it yet",
+    "kitchen: it has not been near it yet: explores until it comes there",
     "Experience 7: 3.0 m to the right, 12 s",
     "Experience 3: 4.0 m to the right, no route known",
   ];

@@ -88,7 +88,7 @@ def test_a_place_of_the_office_is_an_experience_near_it_or_there_is_a_reason() -
     """For who does not see the map."""
     x, y = SNAPSHOT.map.xy[3].tolist()
     known, unknown = KnownPlace("kitchen", 9.0, 1.0, (x, y)), KnownPlace("library", 1.0, 7.0, None)
-    reason = "the robot has not been near it yet"
+    reason = "it has not been near it yet: explores until it comes there"
     assert places_of(replace(SNAPSHOT, places=(known, unknown)))["named"] == [
         {"name": "kitchen", "experience": int(SNAPSHOT.map.ids[3]), "x": x, "y": y, "why": None},
         {"name": "library", "experience": None, "x": None, "y": None, "why": reason},

@@ -214,12 +214,8 @@ export class PlaceList {
       ` ${choice.where}`,
     );
     go.addEventListener("click", () => this.go(choice));
-    if (choice.why) {
-      go.classList.add("unknown");
-      go.setAttribute("aria-label", `Explore until it comes to ${choice.title}: ${choice.why}`);
-      return make("li", {}, go);
-    }
     go.setAttribute("aria-label", `Go to ${choice.title}, ${choice.where}`);
+    if (choice.why) return make("li", {}, go);
     const look = make("button", { type: "button", textContent: "Inspect" });
     look.setAttribute("aria-label", `Inspect ${choice.title}`);
     look.addEventListener("click", () => this.look(choice));
