@@ -177,7 +177,7 @@ def _kidnap(kidnap: Kidnapping, experiences: int) -> None:
     whole("ticks before a kidnap", kidnap.ticks, 0)
     number("the way since a kidnap", kidnap._way_m, 0.0, FAR_M)
     true(isinstance(kidnap._noticed, bool), "whether a kidnap was noticed must be true or false")
-    for name in ("after_s", "after_m", "joined_s", "consistent_s"):
+    for name in ("after_s", "after_m", "joined_s", "consistent_s", "met_s"):
         _time(name, getattr(kidnap, name))
     for name in ("wrong", "_right", "_agrees"):
         stretch = getattr(kidnap, name)

@@ -18,6 +18,7 @@ from sim2d import Truth
 
 REVISIT_AGE_S = 20.0  # an active experience that was made longer ago than this counts as revisited
 NEAR_M, NEAR_RAD = 1.0, 0.6
+MET_M, MET_RAD = 1.0, 0.5  # a robot that comes this near to where it was before has something to recognise
 CONSISTENT_M = 0.5  # a revisit is consistent if ground truth and pose estimate are this near to each other
 CONSISTENT_WITHIN_S = 300.0  # of a kidnap; later nobody asks whether the estimate agrees with those of before
 MOST_TICKS = 20_000  # before a kidnap, with whose estimates one after it is compared: the work is bounded
@@ -189,12 +190,19 @@ class Evaluation:
         self, kidnap: Kidnapping, time_s: float, truth: Truth, experiences: ExperienceMap, way_m: float
     ) -> None:
         kidnap.drive(way_m)
+        if kidnap.met_s is None and self._meets(kidnap, truth):
+            kidnap.met_s = time_s - kidnap.at_s
         kidnap.carried(time_s, experiences.carried)
         if kidnap.after_s is None:
             kidnap.believes(time_s, self._right(kidnap, truth, experiences))
         if kidnap.consistent_s is None and time_s - kidnap.at_s < CONSISTENT_WITHIN_S:
             passes = self._passes_before(kidnap, experiences)
             kidnap.agrees(time_s, _near(off_earlier_passes(*passes, _pose(truth), experiences.robot)))
+
+    def _meets(self, kidnap: Kidnapping, truth: Truth) -> bool:
+        before = self._rows[max(0, kidnap.ticks - MOST_TICKS) : kidnap.ticks : EVERY]
+        near = np.hypot(before[:, 0] - truth.x, before[:, 1] - truth.y) <= MET_M
+        return bool((np.abs(wrap_angles(before[near, 2] - truth.heading_rad)) <= MET_RAD).any())
 
     def _right(self, kidnap: Kidnapping, truth: Truth, experiences: ExperienceMap) -> bool | None:
         """Whether place and heading of the pose estimate are right; None if the robot is lost, or at a new
@@ -294,7 +302,7 @@ class Stretch:
         return time_s - self.since_s >= STAY_S - 1e-9
 
 
-@kind("kidnapping/2")
+@kind("kidnapping/3")
 @dataclass(slots=True)
 class Kidnapping:
     """One kidnap, judged for all engines alike by the pose estimate, from which the robot acts.
@@ -302,7 +310,8 @@ class Kidnapping:
     It is right again (`after_s`, `after_m`) when for half a second the estimate is at a known place, and the ground truth
     within 1 m and 0.6 rad of there. `wrong`: for how long the estimate was at a wrong place until then. `joined_s`: its map
     was one again, which only an engine can tell that notices a kidnap. `consistent_s`: what
-    ACRA 2004 would call relocalised, the estimate agrees with those of earlier passes through here.
+    ACRA 2004 would call relocalised, the estimate agrees with those of earlier passes through here. `met_s`: it first was
+    within 1 m and 0.5 rad of where it had been before.
     """
 
     at_s: float
@@ -313,6 +322,7 @@ class Kidnapping:
     after_m: float | None = None
     joined_s: float | None = None
     consistent_s: float | None = None
+    met_s: float | None = None
     wrong: Stretch = field(default_factory=Stretch)
     _right: Stretch = field(default_factory=Stretch)
     _agrees: Stretch = field(default_factory=Stretch)

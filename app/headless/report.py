@@ -78,13 +78,14 @@ def judged(session: Session) -> dict[str, Any]:
 
 
 def kidnaps(session: Session) -> list[dict[str, Any]]:
-    """Each kidnap, and whether and after how long the robot knew again where it was."""
+    """Each kidnap: whether and when the robot knew again where it was, and when it first met ground that it knew."""
     return [
         {
             "at_s": k.at_s,
             "recovered": k.after_s is not None,
             "after_s": rounded(k.after_s),
             "after_m": rounded(k.after_m),
+            "met_s": rounded(k.met_s),
         }
         for k in session.evaluation.kidnaps
     ]

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Any
 
 Report = dict[str, Any]
+SOON_S = 120.0  # of a kidnap
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,6 +83,9 @@ def kidnaps(runs: list[Report], beside: list[Report]) -> Iterator[Figure]:
     """beside: the same worlds and seeds without kidnaps."""
     all_ = [kidnap for run in runs if not run["error"] for kidnap in run["kidnaps"]]
     yield share("kidnaps recovered", sum(k["recovered"] for k in all_), len(all_), 0.97, "97 of 100")
+    met = [k for k in all_ if k["met_s"] is not None and k["met_s"] <= SOON_S]
+    soon = sum(k["recovered"] and k["after_s"] <= SOON_S for k in met)
+    yield share("in two minutes, of those that met known ground", soon, len(met), 0.9, "90 of 100")
     after = [k["after_s"] for k in all_ if k["recovered"]]
     if after:
         words = f"{statistics.median(after):.0f} s in the median, {max(after):.0f} s at worst"

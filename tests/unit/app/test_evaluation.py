@@ -207,6 +207,16 @@ def test_who_has_recovered() -> None:
     assert [kidnapped(**how) for how in badly] == [None] * 5
 
 
+def test_known_ground_is_met_within_a_metre_of_an_old_pose_and_half_a_radian() -> None:
+    evaluation, map_ = driven(100)  # from (7, 1) to (7, 4), north
+    evaluation.kidnapped(9.9, map_)
+    north = math.pi / 2
+    elsewhere = (8.2, 2.0, north), (7.0, 5.2, north), (7.0, 2.0, north + 0.6), (7.0, 2.0, -north)
+    for tick, pose in enumerate((*elsewhere, elsewhere[0], (7.9, 2.0, north - 0.4), elsewhere[0]), start=100):
+        evaluation.record(tick * DT, Truth(*pose, 0.0, 0.0), map_, False, STILL)
+        assert evaluation.kidnaps[0].met_s == (None if tick < 105 else pytest.approx(0.6))
+
+
 def test_of_what_a_brain_brought_the_map_says_where_it_is() -> None:
     for wrong_m, after_s in ((0.5, pytest.approx(0.1)), (1.5, None)):
         evaluation, map_ = driven(100, known=1, start=1)

@@ -34,7 +34,7 @@ def test_the_report_has_its_shape() -> None:
     assert list(report["error_m"]) == ["map", "odometry"]
     assert list(report["revisit_consistency"]) == ["within_half_metre"]
     assert [list(goal) for goal in report["goals"]] == [GOAL_KEYS] * 2
-    assert [list(kidnap) for kidnap in report["kidnaps"]] == [["at_s", "recovered", "after_s", "after_m"]] * 2
+    assert [list(kidnap) for kidnap in report["kidnaps"]] == [["at_s", "recovered", "after_s", "after_m", "met_s"]] * 2
     assert [kidnap["at_s"] for kidnap in report["kidnaps"]] == [5.0, 20.0]
     assert (report["world"], report["seed"]) == ("office", 2)
     assert report["ticks"] == round(report["simulated_s"] * 10) >= 300

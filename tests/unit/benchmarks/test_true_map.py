@@ -96,10 +96,11 @@ def test_the_loop_of_the_corridors_has_to_be_closed_in_every_run() -> None:
 
 
 def test_kidnaps_and_what_they_cost() -> None:
-    again, without = {"recovered": True, "after_s": 4.0}, report(variant="without")
-    lost = {"recovered": False, "after_s": None}
+    again, without = {"recovered": True, "after_s": 4.0, "met_s": 0.0}, report(variant="without")
+    lost = {"recovered": False, "after_s": None, "met_s": None}
     found = verdicts("kidnaps", [report(kidnaps=[again] * 97 + [lost] * 3, error_m={"map": 0.11}), without])
     assert found["kidnaps recovered"].words == "97 of 100"
+    assert found["in two minutes, of those that met known ground"].words == "97 of 97"
     assert all(f.holds for f in found.values() if f.bar)
     found = verdicts("kidnaps", [report(kidnaps=[again], error_m={"map": 0.2}), without])
     assert not found["map error / without, worst"].holds
