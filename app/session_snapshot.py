@@ -28,6 +28,7 @@ from app.pilot.bars import Bar, Bars
 from app.pilot.behaviours import Behaviour
 from app.pilot.explore import Explorer, Turn
 from app.pilot.known_ground import KnownGround
+from app.pilot.opening import Opening
 from app.pilot.route_following import RouteFollower
 from app.pilot.seeking import Seeker
 from app.session import LONGEST_NAME, MOST_TAGS, Session
@@ -267,7 +268,12 @@ def _seeker(seeker: Seeker, experiences: int) -> None:
     within("openings", openings, -FAR_M, FAR_M)
     for name, value in (("the trip", seeker._trip_s), ("the longest trip", seeker._trip_most_s)):
         number(name, value, 0.0, LONGEST_S)
-    number("how near to the opening it came", seeker._nearest_m, 0.0)
+    leg = seeker._last_leg
+    true(leg is None or leg is seeker._closer or isinstance(leg, Opening), "the last leg of a trip must be one")
+    if isinstance(leg, Opening):
+        whole("from where an opening was seen", leg.experience, 0, experiences - 1)
+        pose("an opening", leg.place)
+        number("how near to the opening it came", leg._nearest_m, 0.0)
 
 
 def _bars(bars: Bars) -> None:

@@ -29,9 +29,15 @@ def active_aim(experiences: ExperienceMap, p: PilotParams) -> tuple[float, float
     row = rows[np.argmax(rows[:, ODDS])]
     if row[ODDS] < PRIOR:  # more has spoken against it than for it
         return None
-    robot = Pose2(float(row[X]), float(row[Y]), float(row[HEADING]))
     ways = experiences.submap_of[: experiences.evidence.known] == row[SUBMAP]
-    poses = experiences.poses[: len(ways)]
+    return along(Pose2(float(row[X]), float(row[Y]), float(row[HEADING])), experiences.poses[: len(ways)], ways, p)
+
+
+def along(robot: Pose2, poses: NDArray[np.float64], ways: NDArray[np.bool_], p: PilotParams) -> tuple[float, float]:
+    """The next point, metres in the robot's frame, along the old way that is reached and faced soonest.
+
+    poses: (n, 3), one after the other as they were driven; ways: (n,), those that count, one at least.
+    """
     away = np.hypot(poses[:, 0] - robot.x, poses[:, 1] - robot.y)
     turn = np.abs(wrap_angles(poses[:, 2] - robot.heading_rad))
     nearest = int(np.argmin(np.where(ways, away / p.cruise_speed + turn / p.turn_rate, np.inf)))

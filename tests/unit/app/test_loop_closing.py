@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 
+from app.pilot.loop_closing import LOOP_AGAIN_S, LOOP_S, MIDDLE_M, LoopCloser
 from app.pilot.params import PilotParams
-from app.pilot.seeking import FAR_M, LOOP_AGAIN_S, MIDDLE_M, LoopCloser
 from ratslam_core import Pose2
 
 from .pilots import ANGLES, FAR
@@ -34,7 +34,7 @@ def almost_round() -> HandMadeMap:
 
 def chooses(map_: HandMadeMap, closer: LoopCloser, ranges: np.ndarray = FAR, now_s: float = 1000.0) -> bool:
     times = map_.temporal_map.times_to(map_.active)
-    return closer.choose(map_, ranges, times, now_s, USUAL)  # type: ignore[arg-type]
+    return closer.choose(map_, ranges, times, now_s, USUAL) is not None  # type: ignore[arg-type]
 
 
 def closing() -> tuple[HandMadeMap, LoopCloser]:
@@ -44,33 +44,28 @@ def closing() -> tuple[HandMadeMap, LoopCloser]:
     return map_, closer
 
 
-def aim_of(closer: LoopCloser, map_: HandMadeMap) -> tuple[tuple[float, float] | None, bool]:
-    return closer.aim(map_, USUAL)  # type: ignore[arg-type]
+def aim_of(closer: LoopCloser, map_: HandMadeMap) -> tuple[float, float] | None:
+    return closer.aim(map_, 0.1, USUAL)  # type: ignore[arg-type]
 
 
 def test_known_ground_that_is_far_by_the_links_is_driven_along() -> None:
     map_, closer = closing()
-    road = map_.poses[closer.road]
-    assert road[0, 0] == 0.0  # the nearest of it
-    assert (np.diff(road[:, 0]) > FAR_M).all()
-    assert (road[:, 1] == 0.0).all()
-    assert road[-1, 0] > 20.0
-    while map_.robot.x < road[-1, 0] - FAR_M / 2:
-        aim, _ = aim_of(closer, map_)
+    while map_.robot.x < 20.0:
+        aim = aim_of(closer, map_)
         assert aim is not None
         assert abs(math.atan2(aim[1], aim[0])) < 0.01  # straight on
         map_.robot = Pose2(map_.robot.x + 0.5, 0.0, 0.0)
-    assert aim_of(closer, map_) == (None, False)
+    map_.robot = Pose2(80.0, -40.0, 0.0)
+    assert aim_of(closer, map_) is None
 
 
-def test_along_the_road_the_direction_counts_more_than_the_place() -> None:
-    """The map is off by 2 m: the robot drives beside the road, and only leans towards it."""
+def test_on_old_ground_the_direction_counts_more_than_the_place() -> None:
+    """The map is off by 2 m: the robot drives beside the way, and only leans towards it."""
     map_, closer = closing()
     map_.robot = Pose2(0.0, 2.0, 0.0)
-    aim_of(closer, map_)
-    aim, _ = aim_of(closer, map_)
+    aim = aim_of(closer, map_)
     assert aim is not None
-    assert aim[0] > 1.0
+    assert aim[0] > 0.5
     assert -MIDDLE_M - 1e-9 <= aim[1] < 0.0
 
 
@@ -79,8 +74,14 @@ def test_a_closed_loop_ends_it() -> None:
     map_.links = np.concatenate([map_.links, [(0, len(map_) - 1)]])  # recognised
     map_.link_times = np.append(map_.link_times, 15.0)
     map_.robot = Pose2(0.0, 0.0, 0.0)
-    aim_of(closer, map_)
-    assert aim_of(closer, map_) == (None, False)
+    assert aim_of(closer, map_) is None
+
+
+def test_what_closes_no_loop_is_given_up() -> None:
+    map_, closer = closing()
+    aims = [aim_of(closer, map_) is not None for _ in range(round(LOOP_S / 0.1) + 2)]
+    assert aims[:-4] == [True] * len(aims[:-4])
+    assert not aims[-1]
 
 
 def test_what_the_sonars_do_not_see_is_no_loop() -> None:
@@ -93,6 +94,5 @@ def test_what_the_sonars_do_not_see_is_no_loop() -> None:
 
 def test_it_is_not_tried_again_at_once() -> None:
     map_, closer = closing()
-    closer.stop()
     assert not chooses(map_, closer, now_s=1000.0 + LOOP_AGAIN_S - 1.0)
     assert chooses(map_, closer, now_s=1000.0 + LOOP_AGAIN_S + 1.0)

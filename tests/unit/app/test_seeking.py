@@ -5,8 +5,11 @@ from __future__ import annotations
 import math
 
 import numpy as np
+import pytest
 
 from app.pilot.known_ground import PLACE_REACH_M, KnownGround
+from app.pilot.opening import REACH_M, STEP_M, STILL_S, Opening
+from app.pilot.params import PilotParams
 from app.pilot.route_following import RouteFollower
 from app.pilot.seeking import WANDER_S
 from ratslam_core import Pose2
@@ -15,6 +18,7 @@ from sim2d import Simulator
 from .pilots import EXPLORING, Run, a_pilot
 from .worlds import EXACT, HandMadeMap, chain, room
 
+USUAL = PilotParams()
 NO_LOOPS = {"loop_share": 0.0}
 TRIPS = {"going where the map is thin", "going back to known ground"}
 AHEAD, RIGHT = slice(3, 5), slice(6, 8)  # sonars
@@ -99,10 +103,23 @@ def test_a_door_post_in_the_way_is_driven_round() -> None:
     chosen(run)
     seeker = run.pilot._seeker
     seeker.follower = RouteFollower(len(map_) - 1, run.pilot._bars)
-    seeker._opening = Pose2(2.2, 0.95, 0.0)
+    seeker._last_leg = Opening(len(map_) - 1, Pose2(2.2, 0.95, 0.0))
     while seeker.follower is not None and len(run.track) < 250:
         run.tick()
     assert math.dist(run.truth, (4.5, 2.95)) < 0.6
+
+
+def test_what_it_comes_no_nearer_to_is_given_up() -> None:
+    map_, opening, aims = HandMadeMap([(0.0, 0.0)], []), Opening(0, Pose2(3.0, 0.0, 0.0)), 0
+    while map_.robot.x < 1.0:  # slowly, but nearer and nearer
+        map_.robot = Pose2(map_.robot.x + 1.1 * STEP_M, 0.0, 0.0)
+        for _ in range(round(STILL_S / 0.2)):
+            assert opening.aim(map_, 0.1, USUAL) == pytest.approx((3.0 - map_.robot.x, 0.0))  # type: ignore[arg-type]
+    while opening.aim(map_, 0.1, USUAL) is not None:  # type: ignore[arg-type]
+        aims += 1
+    assert aims == pytest.approx(STILL_S / 0.2, abs=2)
+    map_.robot = Pose2(3.0 - 0.9 * REACH_M, 0.0, 0.0)
+    assert Opening(0, Pose2(3.0, 0.0, 0.0)).aim(map_, 0.1, USUAL) is None  # type: ignore[arg-type]
 
 
 def test_while_there_is_an_opening_it_does_not_wander() -> None:
@@ -211,7 +228,7 @@ def test_on_a_submap_it_does_not_go_back() -> None:
         seeker.stop()
         chosen(run)
         assert seeker.returning == goes_back
-        assert (seeker._opening is not None) != goes_back
+        assert (seeker._last_leg is not None) != goes_back
 
 
 def test_on_a_submap_it_begins_where_that_began() -> None:

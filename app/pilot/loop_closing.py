@@ -1,0 +1,107 @@
+"""[ours] Closing loops: known ground that lies near on the map, but far by the links, is driven to and along.
+
+A view is recognised where it was seen before, from the same side. So the robot drives along the old way as it drove there
+before, in the middle between the walls, until it is recognised. The map may be off by metres there: the direction of the way
+counts more than its place.
+test_loop_closing.py::{test_known_ground_that_is_far_by_the_links_is_driven_along, test_it_is_not_tried_again_at_once,
+test_what_the_sonars_do_not_see_is_no_loop}.
+"""
+
+from __future__ import annotations
+
+import math
+from bisect import bisect
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.pilot.active_localisation import along
+from app.pilot.known_ground import OPENING_GAP_M, placed
+from app.pilot.params import PilotParams
+from disk import kind
+from ratslam_core import ExperienceMap, Pose2, wrap_angles
+
+FAR_M = 2.8  # so near to a way, its direction counts more than its place
+LOOP_M = 30.0  # known ground at least this far by the links closes a loop, if it is near: `loop_share` of that way ...
+LOOP_MOST_M = 150.0  # ... of which no more counts than this
+LOOP_S = 40.0  # it is driven along for so long, so that it is recognised
+LOOP_AGAIN_S = 300.0  # from the same place it is tried again after this time
+MIDDLE_M, MIDDLE_AHEAD_M = 0.5, 1.5  # it keeps to the middle, steering aside by at most this, at a point so far ahead
+
+_Array = NDArray[np.float64]
+_Point = tuple[float, float]
+
+
+@kind("loop closer/2")
+class LoopCloser:
+    """Chooses a loop to close, and drives until it is closed."""
+
+    def __init__(self, sonar_angles_rad: _Array) -> None:
+        """sonar_angles_rad: (8,), positive to the left."""
+        self._angles = np.array(sonar_angles_rad, np.float64)
+        self._goal = -1  # what it heads for first: the loop is closed when links lead there
+        self._left_s = 0.0  # of driving along old ground
+        self._tried: list[tuple[int, float, float]] = []  # where it set out: m, in the frame of an experience
+        self._tried_s: list[float] = []  # and when
+
+    def choose(
+        self, experiences: ExperienceMap, ranges_m: NDArray[np.float32], times: _Array, now_s: float, p: PilotParams
+    ) -> int | None:
+        """The experience to head for, where there is a loop to close. times: (n,) s, to each experience by the links."""
+        poses, robot = experiences.poses, experiences.robot
+        if self._tried_near(robot, experiences, now_s):
+            return None
+        near, away, turn = _near_but_far(poses, robot, times, p)
+        near = near[np.argsort(away[near] / p.cruise_speed + turn[near] / p.turn_rate, kind="stable")]
+        bearing = wrap_angles(np.arctan2(poses[near, 1] - robot.y, poses[near, 0] - robot.x) - robot.heading_rad)
+        beams = np.argmin(np.abs(self._angles - bearing[:, None]), axis=1)
+        seen = ranges_m[beams] >= np.minimum(away[near], FAR_M + OPENING_GAP_M)
+        ahead = near[seen & (np.abs(bearing) <= abs(self._angles[0]))]
+        if not len(ahead):
+            return None
+        here = experiences.pose(experiences.active).inverse().compose(robot)
+        self._tried.append((experiences.active, here.x, here.y))
+        self._tried_s.append(now_s)
+        self._goal, self._left_s = int(ahead[0]), LOOP_S
+        return self._goal
+
+    def _tried_near(self, robot: Pose2, experiences: ExperienceMap, now_s: float) -> bool:
+        """Whether it was tried near here, and not long ago."""
+        if self._tried and max(row for row, _, _ in self._tried) >= len(experiences):  # another map
+            self._tried, self._tried_s = [], []
+        x, y = placed(self._tried[bisect(self._tried_s, now_s - LOOP_AGAIN_S) :], experiences.poses).T
+        return bool(np.any(np.hypot(x - robot.x, y - robot.y) < FAR_M))
+
+    def aim(self, experiences: ExperienceMap, dt: float, p: PilotParams) -> _Point | None:
+        """The next point to head for, m, robot's frame; None when the loop is closed, or was not for too long."""
+        self._left_s -= dt
+        poses, robot = experiences.poses, experiences.robot
+        times = experiences.temporal_map.times_to(experiences.active)
+        near, away, turn = _near_but_far(poses, robot, times, p)
+        if self._left_s <= 0.0 or not len(near) or times[self._goal] * p.cruise_speed < LOOP_M:
+            return None
+        nearest = int(near[np.argmin(away[near] / p.cruise_speed + turn[near] / p.turn_rate)])
+        if away[nearest] < FAR_M:
+            way = experiences.pose(nearest)
+            here = way.inverse().compose(robot)
+            robot = way.compose(Pose2(here.x, max(-MIDDLE_M, min(MIDDLE_M, here.y)), here.heading_rad))
+        ways = np.zeros(len(poses), np.bool_)
+        ways[near] = True
+        return along(robot, poses, ways, p)
+
+
+def _near_but_far(
+    poses: _Array, robot: Pose2, times: _Array, p: PilotParams
+) -> tuple[NDArray[np.int64], _Array, _Array]:
+    """Experiences (k,) that lie near on the map, but far by the links; of all (n,), how far away, m, and how far to turn, rad."""
+    away, way = np.hypot(poses[:, 0] - robot.x, poses[:, 1] - robot.y), times * p.cruise_speed
+    near = np.flatnonzero((away < p.loop_share * np.minimum(way, LOOP_MOST_M)) & (way > LOOP_M))
+    return near.astype(np.int64), away, np.abs(wrap_angles(poses[:, 2] - robot.heading_rad))
+
+
+def in_the_middle(aim: _Point, ranges_m: NDArray[np.float32]) -> _Point:
+    """The aim, nearer, and moved towards the side where more is free."""
+    away = math.hypot(*aim)
+    share = min(1.0, MIDDLE_AHEAD_M / away) if away > 0 else 1.0
+    aside = (float(ranges_m[0]) - float(ranges_m[-1])) / 2
+    return aim[0] * share, aim[1] * share + max(-MIDDLE_M, min(MIDDLE_M, aside))
