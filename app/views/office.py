@@ -4,6 +4,7 @@ it tried, its goal and the places that were tagged.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 
 import numpy as np
@@ -213,12 +214,16 @@ def goal_view(session: Session) -> Goal | None:
     )  # fmt: skip
 
 
+BESIDE_M = 1.5  # a label reaches about so far
+
+
 def trip_view(session: Session) -> Trip | None:
     found = session.pilot.trip(session.brain.experience_map) if session.source.driven else None
     if found is None:
         return None
     (x, y), reason, openings = found
-    return Trip(x, y, reason, frozen(openings.astype(np.float32)))
+    robot = session.brain.experience_map.robot
+    return Trip(x, y, reason, frozen(openings.astype(np.float32)), math.hypot(x - robot.x, y - robot.y) < BESIDE_M)
 
 
 def tags_view(session: Session) -> tuple[TaggedPlace, ...]:

@@ -227,6 +227,7 @@ class Trip:
     y: float
     reason: str
     openings_xy: NDArray[np.float32]  # (k, 2) open floor that it saw and never drove on
+    beside: bool = False  # the robot is so near that the reason, written there, would lie over it
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -10,7 +10,7 @@ import pytest
 
 from tests.fake_snapshots import fake_reports, fake_snapshot
 from tests.unit.web.bench import Bench
-from web.messages import Belief, Hypothesis, MapLayer, OccupancyPicture, Pose, Snapshot, TaggedPlace, TimesLayer
+from web.messages import Belief, Hypothesis, MapLayer, OccupancyPicture, Pose, Snapshot, TaggedPlace, TimesLayer, Trip
 from web.viewer.fits import DEPTH, WIDTH
 
 PLAIN = fake_snapshot(430)
@@ -181,6 +181,15 @@ def test_tagged_places_have_their_names_on_the_map(stage: Bench) -> None:
     assert stage.says("/map/tags_0_pill", "desk")
     assert not stage.visible("/map/tags_1/ring")
     assert not stage.visible("/map/tags_1_pill")
+
+
+def test_why_it_goes_there_is_written_at_the_target_unless_that_lies_over_the_robot(stage: Bench) -> None:
+    x, y = PLAIN.map.xy[0].tolist()
+    trip = Trip(x, y, "new ground, 14 m away", np.array([[x, y], [x + 1, y]], np.float32))
+    for beside in (False, True):
+        stage.show(replace(PLAIN, trip=replace(trip, beside=beside)), 5)
+        assert stage.visible("/map/trip_0_pill") is not beside
+    assert stage.says("/map/trip_0_pill", trip.reason)
 
 
 # ---------------------------------------------------------------- what is inspected, and doubt

@@ -191,12 +191,13 @@ class MapPlate(Plate):
     def set_trip(self, trip: Trip | None) -> None:
         """Shows where the robot explores, and why, and what else it might have chosen."""
         openings = np.zeros((0, 2), np.float32) if trip is None else trip.openings_xy
-        at = np.array([] if trip is None else [(trip.x, trip.y)]).reshape(-1, 2)
+        marks = [] if trip is None or trip.beside else [trip]
+        at = np.array([(mark.x, mark.y) for mark in marks]).reshape(-1, 2)
         places = meshes.stepped(self.fit.to_plate(openings))
         places = places[(np.abs(places) <= (WIDTH / 2, DEPTH / 2)).all(axis=1)]
         self._openings.place(meshes.lifted(places, NODE_Z))
         self._openings.paint(np.tile(np.array(pale(self.palette, self.palette.goal), np.uint8), (len(places), 1)))
-        self._trip.show([] if trip is None else [trip.reason], meshes.stepped(self.fit.to_plate(at)))
+        self._trip.show([mark.reason for mark in marks], meshes.stepped(self.fit.to_plate(at)))
 
     def set_tags(self, tags: tuple[TaggedPlace, ...]) -> None:
         places = self.fit.to_plate(np.array([(tag.x, tag.y) for tag in tags]).reshape(-1, 2))

@@ -98,7 +98,8 @@ def _draw_trip(sheet: Sheet, subject: Subject, fit: MapFit) -> list[Entry]:
         return []
     for place in fit.to_plate(trip.openings_xy).tolist():
         sheet.dot(place, DOT, pale(palette, palette.goal))
-    draw_pin(sheet, subject, fit.to_plate(np.array([[trip.x, trip.y]]))[0].tolist(), trip.reason)
+    if not trip.beside:
+        draw_pin(sheet, subject, fit.to_plate(np.array([[trip.x, trip.y]]))[0].tolist(), trip.reason)
     return [("ring", pale(palette, palette.goal), "open floor, not yet driven on")] if len(trip.openings_xy) else []
 
 
