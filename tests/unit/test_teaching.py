@@ -69,6 +69,14 @@ def test_every_lesson_has_its_outcome_and_is_called_as_on_its_card() -> None:
         assert set(re.findall(r'"([^"]+)"', words.replace("\n", " "))) <= options, name
 
 
+def test_the_lecture_has_the_figures_of_the_outcomes() -> None:
+    """What Try it shows afterwards is told in whole seconds."""
+    for _, name, words in TAUGHT:
+        named = [name, *(code for code in re.findall(CODE, words) if code in LESSONS)]
+        there = " ".join(OUTCOMES[each] + LESSONS[each].predict.question for each in named)
+        assert set(re.findall(r"\d+\.\d+", words)) <= set(re.findall(r"\d+\.\d+", there)), name
+
+
 def test_the_lessons_on_what_is_ours_are_named_by_their_numbers() -> None:
     ours = [number for number, lesson in enumerate(LESSONS.values(), 1) if lesson.paper.startswith("ours")]
     first, last = map(int, re.findall(r"lessons (\d+) to (\d+)", PAGE)[0])

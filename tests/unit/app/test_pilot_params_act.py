@@ -116,8 +116,7 @@ def at_a_loop(p: PilotParams) -> Trace:
     map_, closer = almost_round(), LoopCloser(ANGLES)
     times = map_.temporal_map.times_to(map_.active)
     for now_s in (1000.0, 1100.0, 1500.0):
-        yield closer.choose(map_, FAR, times, now_s, p), closer.road  # type: ignore[arg-type]
-        closer.stop()
+        yield closer.choose(map_, FAR, times, now_s, p)  # type: ignore[arg-type]
 
 
 def getting_nowhere(p: PilotParams) -> Trace:
