@@ -126,5 +126,5 @@ def open_situation(engine: Engine, request: m.OpenSituation) -> Outcome:
 def leave_situation(engine: Engine, _: m.LeaveSituation) -> Outcome:
     if engine.run.replay is None or engine.run.replay.state != "playing":
         return m.Refused("type", "leave_situation", "no situation is being played up to its moment")
-    engine.leave_situation()
+    engine.go_back()
     return None

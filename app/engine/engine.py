@@ -8,6 +8,7 @@ import math
 import time
 import traceback
 from collections.abc import Callable
+from dataclasses import replace
 
 from app.config import Config
 from app.engine.lesson_supervisor import LessonSupervisor, Teaching
@@ -284,7 +285,7 @@ class Engine:
         session = session_of(teaching.lesson, teaching.number, teaching.seed)
         run = self._make_run(session, beginning_of(session, trial=f"the lesson {teaching.lesson.title}"))
         run.lesson = LessonSupervisor(teaching, session, run.history, at_once=at_once)
-        run.config_before = teaching.config_before
+        run.config_before, run.before = teaching.config_before, self._let_wait()
         if session.world.name not in dict(self.library.titles):
             self.library.add(session.world)
         self._change_to(run, session.world)
@@ -325,22 +326,31 @@ class Engine:
         session = situation.begin(brain)
         run = self._make_run(session, beginning_of(session, brain=kept, trial=situation.header.trial))
         run.require_showable()
-        before = None if self._run is None or self.fault is not None else (self._run, self.time, self.editor.world)
+        run.before = self._let_wait()
         if session.world.name not in dict(self.library.titles):
             self.library.add(session.world)
         self._change_to(run, session.world)
         self.running = False
-        run.replay = SituationReplay(situation, session, run.event_log, before)
+        run.replay = SituationReplay(situation, session, run.event_log)
         run.replay.after_tick()
         return run
 
-    def leave_situation(self) -> None:
-        """Stop playing what was opened; the run before goes on from where it was, paused."""
-        before = self.run.replay and self.run.replay.before
-        if before is None:
+    def _let_wait(self) -> tuple[Run, TimeTravel, World] | None:
+        """The run that waits while a lesson or a situation takes its place; after a fault there is none to go back to."""
+        run = self._run
+        if run is None or self.fault is not None:
+            return None
+        if run.lesson is not None or (run.replay is not None and run.replay.state == "playing"):
+            return run.before
+        run.before = None  # no run waits for one that waits
+        return run, self.time, self.editor.world
+
+    def go_back(self) -> None:
+        """Leave a lesson or a situation; the run before goes on from where it was, paused."""
+        if self.run.before is None:
             self.run.stop_running_ahead()
             return
-        run, time, world = before
+        run, time, world = self.run.before
         if run.feed is not None:
             run.feed = self._feed(run.session, Fork(run.feed))
         run.snapshots.refresh()
@@ -350,8 +360,9 @@ class Engine:
 
     def go_on_from_here(self) -> Run:
         """Make the moment that is shown the present of a new branch, paused. ValueError says why that cannot be."""
-        before, marks, lesson = self.run.feed, self.run.bookmarks, self.run.lesson
+        before, marks, lesson, waiting = self.run.feed, self.run.bookmarks, self.run.lesson, self.run.before
         run = self.time.go_on_from_here(self._next_number)
+        run.before = waiting
         if run.session.source.world is None:
             run.config_before = self.next_config
         if before is not None:
@@ -419,7 +430,7 @@ class Engine:
         snapshots.office = self.editor.edition if worlds else None
         snapshots.trial = None if run.trial is None else run.trial.view()
         snapshots.situation = None if run.replay is None else run.replay.view()
-        snapshots.lesson = None if run.lesson is None else run.lesson.view()
+        snapshots.lesson = None if run.lesson is None else replace(run.lesson.view(), back=run.before is not None)
         snapshots.until = None if run.until is None else run.until.view()
         snapshots.time = self.time.view(self.slices.work)
         snapshots.pairs, snapshots.additions_off = self._pairs.of(self.config_to_begin, run.session.config)

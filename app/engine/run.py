@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from app.config import Config
 from app.engine.lesson_supervisor import LessonSupervisor
 from app.engine.situation_replay import SituationReplay
@@ -20,6 +22,10 @@ from app.views.events import EventLog
 from app.views.history import History, VisitLog
 from app.views.snapshots import Snapshots
 from app.views.tick_stages import TickRecorder
+from sim2d import World
+
+if TYPE_CHECKING:
+    from app.engine.time_travel import TimeTravel
 
 
 class Run:
@@ -39,6 +45,7 @@ class Run:
         self.lesson: LessonSupervisor | None = None
         self.until: RunUntil | None = None  # what `run_until` waits for
         self.config_before: Config | None = None  # a trial's settings go with it
+        self.before: tuple[Run, TimeTravel, World] | None = None  # waits while a lesson or a situation has its place
         self.feed: RunFeed | None = None  # of who keeps the run
         self.bookmarks = Bookmarks()
         self.history = history or History(self.session)

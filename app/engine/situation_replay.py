@@ -4,7 +4,6 @@ there the hashes are compared."""
 from __future__ import annotations
 
 from functools import partial
-from typing import TYPE_CHECKING
 
 from app.engine.supervisor import Supervisor
 from app.orders import Order, carry_out
@@ -13,13 +12,7 @@ from app.run_record.situation import Situation
 from app.session import Session
 from app.views.events import EventLog
 from app.views.office import goal_view
-from sim2d import World
 from web.messages import EventKind, SituationState, SituationView
-
-if TYPE_CHECKING:
-    from app.engine.run import Run
-    from app.engine.time_travel import TimeTravel
-
 
 _OFFICE = {
     "set_door": "door {name} told to move", "set_lamp": "lamp {name} switched", "put_box": "a box put down",
@@ -55,12 +48,10 @@ def _by_the_run(_session: Session, _watch: object) -> None:
 
 
 class SituationReplay(Supervisor):
-    """Call `after_tick` at the beginning and after each tick. before: the run that waits until this one is at its moment."""
+    """Call `after_tick` at the beginning and after each tick."""
 
-    def __init__(
-        self, situation: Situation, session: Session, log: EventLog, before: tuple[Run, TimeTravel, World] | None
-    ) -> None:
-        self.situation, self.before = situation, before
+    def __init__(self, situation: Situation, session: Session, log: EventLog) -> None:
+        self.situation = situation
         self.state: SituationState = "playing"
         self._words = ""
         self._session, self._log = session, log
@@ -80,7 +71,7 @@ class SituationReplay(Supervisor):
             self._log.note("warning", self._words)
             return
         same, self._words = self.situation.verdict(self._session)
-        self.state, self.before = "same" if same else "other", None
+        self.state = "same" if same else "other"
         if not same:
             self._log.note("warning", self._words)
 

@@ -95,6 +95,16 @@ test("a lesson from the list to the sandbox, with a class that votes", () =>
     await until("the card is away", () => !page.shown("#lesson"));
   }));
 
+test("from a lesson the run before is a click away", () =>
+  fresh(async (page) => {
+    await command("step", { ticks: 123 });
+    await choose(page, "packet");
+    await page.push("Back to your run", "#lesson");
+    await until("the card is away", () => !page.shown("#lesson"));
+    const now = await state();
+    assert.deepEqual([now.tick, now.running, now.lesson], [123, false, null]);
+  }));
+
 test("each of the six demos is three clicks from a fresh page", long, () =>
   fresh(
     async (page) => {

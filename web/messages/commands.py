@@ -265,9 +265,10 @@ class LessonAgain(CommandModel, in_the_past=True):
 
 
 class EndLesson(CommandModel, in_the_past=True):
-    """Leave the lesson. Its run goes on, or stays paused, as it is."""
+    """Leave the lesson. Its run goes on, or stays paused, as it is; back: the run before it goes on instead, paused."""
 
     type: Literal["end_lesson"]
+    back: bool = False
 
 
 class RunUntil(CommandModel, needs="robot", in_the_past=True, at="what"):

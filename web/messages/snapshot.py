@@ -230,6 +230,7 @@ class LessonView:
     marks: tuple[LessonMark, ...]
     altered: bool  # somebody has changed something: it is no longer what the lesson promises
     draws: Literal["office", "map"] | None = None  # the plate on which a place is predicted; None: options are
+    back: bool = False  # whether a run before the lesson waits
 
 
 @dataclass(frozen=True, slots=True)

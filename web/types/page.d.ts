@@ -99,6 +99,7 @@ type LessonView = {
   marks: LessonMark[];
   altered: boolean;
   draws: "office" | "map" | null;
+  back: boolean;
 };
 type UntilView = { what: string; words: string; state: "running" | "met" | "too late" | "broken off"; progress: number };
 type LessonCard = {

@@ -42,7 +42,7 @@ type Predict = { type: "predict"; choice?: number | null; x?: number | null; y?:
 type Vote = { type: "vote"; lesson: string; voter: string; sender?: string; choice?: number | null; x?: number | null; y?: number | null };
 type ShowLesson = { type: "show_lesson" };
 type LessonAgain = { type: "lesson_again" };
-type EndLesson = { type: "end_lesson" };
+type EndLesson = { type: "end_lesson"; back?: boolean };
 type RunUntil = { type: "run_until"; what: "closure" | "snap" | "lost" | "found again" | "packets" | "goal reached" | "place" | "explored"; within_s?: number; count?: number; place?: string | null; x?: number | null; y?: number | null };
 type WatchExperiment = { type: "watch_experiment"; experiment: string; engine?: "paper" | "paper-2005" | "paper-2006" | "ours" | null; levels?: (string)[] | null; seed?: number | null; quick?: boolean; trial?: string | null; moment_s?: number | null };
 type Command = SetGoal | CancelGoal | Tag | Untag | GoToTag | SetMode | Drive | Kidnap | Pause | Resume | Step | SetSpeed | Reset | SetParameter | SetDoor | SetLamp | PutBox | RemoveBox | UsePreset | EditWorld | UndoEdit | RedoEdit | Inspect | StepStage | InjectPacket | CompareBrains | EndComparison | Seek | BackToNow | GoOnFromHere | GoOnWithout | ChangeBranch | CompareBranch | Loop | PutBookmark | RemoveBookmark | LeaveSituation | BeginLesson | Predict | Vote | ShowLesson | LessonAgain | EndLesson | RunUntil | WatchExperiment;
@@ -223,6 +223,7 @@ type IndexIds = {
   "lesson": HTMLElementTagNameMap["section"];
   "lesson-again": HTMLElementTagNameMap["button"];
   "lesson-ask": HTMLElementTagNameMap["details"];
+  "lesson-back": HTMLElementTagNameMap["button"];
   "lesson-body": HTMLElementTagNameMap["div"];
   "lesson-class": HTMLElementTagNameMap["p"];
   "lesson-doing": HTMLElementTagNameMap["p"];

@@ -213,6 +213,29 @@ def test_what_a_lesson_set_goes_with_it_and_what_somebody_set_stays() -> None:
     assert engine.run.session.config == wanted
 
 
+def test_the_run_before_waits_through_lessons_and_branches_and_goes_on_where_it_was() -> None:
+    engine = an_engine(OFFICE)
+    run_for(engine, 5)
+    own, known = engine.run, engine.run.session.state_hash()
+    for name in ("packet", "merge"):  # one lesson after the other
+        tell(engine, type="begin_lesson", name=name)
+        play(engine)
+        assert view(engine).back
+    tell(engine, type="seek", tick=4)
+    tell(engine, type="go_on_from_here")
+    tell(engine, type="end_lesson", back=True)
+    assert (engine.run, engine.running, engine.snapshot().lesson) == (own, False, None)
+    assert (engine.run.session.tick_count, engine.run.session.state_hash()) == (5, known)
+    tell(engine, type="step", ticks=2)
+    run_for(engine, 2)
+    assert own.session.tick_count == 7
+    tell(engine, type="begin_lesson", name="packet")
+    tell(engine, type="end_lesson")  # whose run stays: there is none to go back to
+    tell(engine, type="begin_lesson", name="merge")
+    assert engine.run.before is not None
+    assert engine.run.before[0] is not own
+
+
 def test_one_of_the_catalogue_begins_by_its_name_with_another_seed_and_what_there_is_not_leaves_the_run() -> None:
     engine = an_engine(OFFICE)
     with pytest.raises(ValueError, match=r"there is no lesson .castle.; expected one of: .*kidnapped"):

@@ -27,7 +27,15 @@ const view = (other = {}) => ({
     label: "",
     seed: 1,
   },
-  ...{ prediction: null, votes: { counts: [0, 0], points: [] }, outcome: null, marks: [], altered: false, draws: null },
+  ...{
+    prediction: null,
+    votes: { counts: [0, 0], points: [] },
+    outcome: null,
+    marks: [],
+    altered: false,
+    draws: null,
+    back: false,
+  },
   ...other,
 });
 

@@ -85,7 +85,13 @@ const places = {
   to_goal: false,
   tags: [{ name: "the printer", experience: 7, x: 4, y: 1 }],
   named: [
-    { name: "kitchen", experience: null, x: null, y: null, why: "it has not been near it yet: explores until it comes there" },
+    {
+      name: "kitchen",
+      experience: null,
+      x: null,
+      y: null,
+      why: "it has not been near it yet: explores until it comes there",
+    },
     { name: "library", experience: 3, x: 5, y: 1, why: null },
   ],
   experiences: [
