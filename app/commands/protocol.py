@@ -11,6 +11,7 @@ from app.engine.watched_trial import CHANGED
 from app.protocol.conditions import read_until
 from app.protocol.experiment import Experiment, catalogue, check_levels, chosen_trial
 from app.protocol.lesson import find_lesson
+from app.views.office import REACH_M
 from web import messages as m
 
 NONE = "no lesson was begun in this run: begin one first"
@@ -93,7 +94,8 @@ def run_until(engine: Engine, command: m.RunUntil) -> Outcome:
     engine.running = False
     if command.place is not None and isinstance(where, tuple):
         raise ValueError("give either place or x and y")
-    until = read_until({"what": command.what, "count": command.count, "place": where})
+    near = {"within_m": REACH_M / 2} if isinstance(where, str) else {}  # by then the map knows it by its name
+    until = read_until({"what": command.what, "count": command.count, "place": where, **near})
     engine.run.until = RunUntil(until, command.within_s, engine.run.session, engine.run.history)
     engine.running = True
     return None

@@ -46,6 +46,12 @@ def test_it_stops_exactly_when_the_robot_comes_to_the_place() -> None:
     assert engine.snapshot().until is None
 
 
+def test_when_it_comes_to_a_place_by_name_its_map_knows_that_place() -> None:
+    engine = an_engine(OFFICE, 3)
+    assert run_until(engine, "place", place="kitchen") == ("place", "met")
+    assert {place.name: place.map_xy is not None for place in engine.snapshot().places}["kitchen"]
+
+
 def test_it_says_when_it_did_not_happen_in_time() -> None:
     engine = an_engine(OFFICE)
     assert run_until(engine, "closure", within_s=2.0) == ("closure", "too late")
