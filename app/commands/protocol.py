@@ -74,11 +74,6 @@ def end_lesson(engine: Engine, command: m.EndLesson) -> Outcome:
     if engine.run.lesson is None:
         return m.Refused("type", command.type, NONE)
     engine.break_off()
-    if command.back:
-        if engine.run.before is None:
-            return m.Refused("back", command.back, "no run waits: leave the lesson without it")
-        engine.go_back()
-        return None
     engine.run.lesson = engine.run.before = None
     return None
 

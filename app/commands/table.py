@@ -64,7 +64,7 @@ COMMANDS: dict[type[CommandModel], Handler] = {
     m.ChangeBranch: time.change_branch,
     m.CompareBranch: time.compare_branch,
     m.Loop: time.loop,
-    m.LeaveSituation: time.leave_situation,
+    m.GoBack: time.go_back,
     m.PutBookmark: time.put_bookmark,
     m.RemoveBookmark: time.remove_bookmark,
     m.CompareBrains: brain.compare_brains,

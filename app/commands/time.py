@@ -123,8 +123,6 @@ def open_situation(engine: Engine, request: m.OpenSituation) -> Outcome:
     return None
 
 
-def leave_situation(engine: Engine, _: m.LeaveSituation) -> Outcome:
-    if engine.run.replay is None or engine.run.replay.state != "playing":
-        return m.Refused("type", "leave_situation", "no situation is being played up to its moment")
+def go_back(engine: Engine, _: m.GoBack) -> Outcome:
     engine.go_back()
     return None

@@ -8,13 +8,12 @@ import math
 import time
 import traceback
 from collections.abc import Callable
-from dataclasses import replace
 
 from app.config import Config
 from app.engine.lesson_supervisor import LessonSupervisor, Teaching
 from app.engine.library import Library
 from app.engine.pace import Pace
-from app.engine.run import Run
+from app.engine.run import Before, Run
 from app.engine.situation_replay import SituationReplay
 from app.engine.time_travel import TimeTravel
 from app.engine.waiting import Steps
@@ -269,7 +268,7 @@ class Engine:
         course = trial.begin()
         run = self._make_run(course.session, beginning_of(course.session, trial=title))
         run.trial = WatchedTrial(trial, title, course, run.event_log, moment_s)
-        run.config_before = None if self._run is None else self.next_config
+        run.config_before, run.before = None if self._run is None else self.next_config, self._let_wait()
         world = course.session.world
         if world.name not in dict(self.library.titles):
             self.library.add(world)
@@ -335,28 +334,28 @@ class Engine:
         run.replay.after_tick()
         return run
 
-    def _let_wait(self) -> tuple[Run, TimeTravel, World] | None:
-        """The run that waits while a lesson or a situation takes its place; after a fault there is none to go back to."""
+    def _let_wait(self) -> Before | None:
+        """The run that waits while another has its place; after a fault there is none to go back to."""
         run = self._run
         if run is None or self.fault is not None:
             return None
-        if run.lesson is not None or (run.replay is not None and run.replay.state == "playing"):
+        if run.lesson or run.trial or (run.replay and run.replay.state == "playing"):
             return run.before
         run.before = None  # no run waits for one that waits
-        return run, self.time, self.editor.world
+        return Before(run, self.time, self.editor.world, self.running, self.pace.speed)
 
     def go_back(self) -> None:
-        """Leave a lesson or a situation; the run before goes on from where it was, paused."""
-        if self.run.before is None:
-            self.run.stop_running_ahead()
-            return
-        run, time, world = self.run.before
+        """Leave a lesson, a trial or a situation: the run before goes on as it was. ValueError: there is none."""
+        before = self.run.before
+        if before is None:
+            raise ValueError("no run waits: this one took the place of none")
+        run = before.run
         if run.feed is not None:
             run.feed = self._feed(run.session, Fork(run.feed))
         run.snapshots.refresh()
-        self._time = time
-        self._go_on_with(run, world)
-        self.running = False
+        self._time = before.time
+        self._go_on_with(run, before.world)
+        self.running, self.pace.speed = before.running, before.speed
 
     def go_on_from_here(self) -> Run:
         """Make the moment that is shown the present of a new branch, paused. ValueError says why that cannot be."""
@@ -430,7 +429,8 @@ class Engine:
         snapshots.office = self.editor.edition if worlds else None
         snapshots.trial = None if run.trial is None else run.trial.view()
         snapshots.situation = None if run.replay is None else run.replay.view()
-        snapshots.lesson = None if run.lesson is None else replace(run.lesson.view(), back=run.before is not None)
+        snapshots.lesson = None if run.lesson is None else run.lesson.view()
+        snapshots.back = run.before is not None
         snapshots.until = None if run.until is None else run.until.view()
         snapshots.time = self.time.view(self.slices.work)
         snapshots.pairs, snapshots.additions_off = self._pairs.of(self.config_to_begin, run.session.config)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from app.config import Config
@@ -28,6 +29,17 @@ if TYPE_CHECKING:
     from app.engine.time_travel import TimeTravel
 
 
+@dataclass(frozen=True, slots=True)
+class Before:
+    """The run that waits while a lesson, a trial or a situation has its place."""
+
+    run: Run
+    time: TimeTravel
+    world: World
+    running: bool
+    speed: float
+
+
 class Run:
     """A session with its history and snapshots."""
 
@@ -45,7 +57,7 @@ class Run:
         self.lesson: LessonSupervisor | None = None
         self.until: RunUntil | None = None  # what `run_until` waits for
         self.config_before: Config | None = None  # a trial's settings go with it
-        self.before: tuple[Run, TimeTravel, World] | None = None  # waits while a lesson or a situation has its place
+        self.before: Before | None = None
         self.feed: RunFeed | None = None  # of who keeps the run
         self.bookmarks = Bookmarks()
         self.history = history or History(self.session)

@@ -70,6 +70,7 @@ class Snapshots:
         self.until: UntilView | None = None
         self.time: TimeView | None = None
         self.situation: SituationView | None = None
+        self.back = False
         self.pairs: tuple[PairChoice, ...] = ()
         self.additions_off = AdditionsOff()
         self.inspected = Inspect(type="inspect")  # at first nothing
@@ -177,6 +178,7 @@ class Snapshots:
             until=self.until,
             time=self.time,
             situation=self.situation,
+            back=self.back,
             beside=self.beside(),
             pairs=self.pairs,
             additions_off=self.additions_off,

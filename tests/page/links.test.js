@@ -53,7 +53,7 @@ test("a file leads there, and one that is long can be left", () =>
     assert.equal((await state()).tick, 20);
     page.choosesFiles("#open-files", ["long.situation.json", JSON.stringify({ ...JSON.parse(file), tick: 5_000_000 })]);
     await page.says("#situation", "of 5,000,000");
-    await page.click("#situation-leave");
+    await page.push("Back to your run", "#situation");
     await until("it is left", async () => (await state()).tick === 20 && !(await state()).running);
   }));
 

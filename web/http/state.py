@@ -176,6 +176,7 @@ def page_fields(snapshot: Snapshot) -> dict[str, Any]:
         "moving": None if snapshot.living is None else _moving(snapshot.living),
         "time": None if snapshot.time is None else _time(snapshot.time),
         "situation": None if snapshot.situation is None else _situation(snapshot.situation),
+        "back": snapshot.back,
         **_stage(snapshot),
     }
 

@@ -201,10 +201,10 @@ class RemoveBookmark(CommandModel, in_the_past=True, at="tick"):
     tick: Annotated[int, Field(ge=0, le=10**9)]
 
 
-class LeaveSituation(CommandModel, in_the_past=True, while_playing=True):
-    """Stop playing a situation that was opened, before it is at its moment. The run that it took the place of goes on, paused."""
+class GoBack(CommandModel, in_the_past=True, while_playing=True):
+    """Leave a lesson, a trial of an experiment or a situation: the run that it took the place of goes on as it was."""
 
-    type: Literal["leave_situation"]
+    type: Literal["go_back"]
 
 
 TimeOrder = (
@@ -217,7 +217,7 @@ TimeOrder = (
     | Loop
     | PutBookmark
     | RemoveBookmark
-    | LeaveSituation
+    | GoBack
 )
 
 
@@ -265,10 +265,9 @@ class LessonAgain(CommandModel, in_the_past=True):
 
 
 class EndLesson(CommandModel, in_the_past=True):
-    """Leave the lesson. Its run goes on, or stays paused, as it is; back: the run before it goes on instead, paused."""
+    """Leave the lesson. Its run goes on, or stays paused, as it is."""
 
     type: Literal["end_lesson"]
-    back: bool = False
 
 
 class RunUntil(CommandModel, needs="robot", in_the_past=True, at="what"):

@@ -230,7 +230,6 @@ class LessonView:
     marks: tuple[LessonMark, ...]
     altered: bool  # somebody has changed something: it is no longer what the lesson promises
     draws: Literal["office", "map"] | None = None  # the plate on which a place is predicted; None: options are
-    back: bool = False  # whether a run before the lesson waits
 
 
 @dataclass(frozen=True, slots=True)
@@ -406,6 +405,7 @@ class Snapshot:
     until: UntilView | None = None  # None: nothing is or was waited for
     trip: Trip | None = None  # while the robot explores on purpose
     tags: tuple[TaggedPlace, ...] = ()  # in the order in which they were given
+    back: bool = False  # a run waits whose place this one has
     situation: SituationView | None = None  # None: the run is no situation that was opened
     time: TimeView | None = None  # None: nothing of this run can be gone back to
     beside: BesideView | None = None  # None: one brain only

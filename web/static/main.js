@@ -69,6 +69,11 @@ const watched = new Watched({
   again: (wish) => command(wish),
   more: () => gallery.open(),
 });
+const goBack = /** @type {HTMLButtonElement[]} */ ([...document.querySelectorAll(".go-back")]);
+for (const button of goBack)
+  button.addEventListener("click", async () => {
+    if (await command({ type: "go_back" }, "Your run goes on from where it was.")) viewer.show(viewer.chosen);
+  });
 if (!watching) takeBrainFiles();
 const keeping = new Keeping(link, { viewer, panel, files, timeline, mayLeave });
 viewer.addEventListener(
@@ -91,6 +96,7 @@ link.on("state", (/** @type {{ state: State, page: PageFields }} */ detail) => {
   source.show(detail.page.recording);
   header.show(state, detail.page);
   watched.show(state, detail.page);
+  for (const button of goBack) button.hidden = !detail.page.back;
   aids.show(detail.page);
   panel.inspected(detail.page.inspected);
   timeline.at(state, detail.page.time);

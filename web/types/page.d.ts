@@ -99,7 +99,6 @@ type LessonView = {
   marks: LessonMark[];
   altered: boolean;
   draws: "office" | "map" | null;
-  back: boolean;
 };
 type UntilView = { what: string; words: string; state: "running" | "met" | "too late" | "broken off"; progress: number };
 type LessonCard = {
@@ -171,6 +170,7 @@ type PageFields = {
   vision: boolean;
   closure: { event: number; time_s: number; moved_m: number } | null;
   situation: SituationFields | null;
+  back: boolean;
   pairs: PairChoice[];
   additions_off: AdditionsOff;
 };

@@ -217,14 +217,15 @@ def test_the_run_before_waits_through_lessons_and_branches_and_goes_on_where_it_
     engine = an_engine(OFFICE)
     run_for(engine, 5)
     own, known = engine.run, engine.run.session.state_hash()
+    engine.running, engine.pace.speed = True, 2.0
     for name in ("packet", "merge"):  # one lesson after the other
         tell(engine, type="begin_lesson", name=name)
         play(engine)
-        assert view(engine).back
+        assert engine.snapshot().back
     tell(engine, type="seek", tick=4)
     tell(engine, type="go_on_from_here")
-    tell(engine, type="end_lesson", back=True)
-    assert (engine.run, engine.running, engine.snapshot().lesson) == (own, False, None)
+    tell(engine, type="go_back")
+    assert (engine.run, engine.running, engine.pace.speed, engine.snapshot().lesson) == (own, True, 2.0, None)
     assert (engine.run.session.tick_count, engine.run.session.state_hash()) == (5, known)
     tell(engine, type="step", ticks=2)
     run_for(engine, 2)
@@ -233,7 +234,7 @@ def test_the_run_before_waits_through_lessons_and_branches_and_goes_on_where_it_
     tell(engine, type="end_lesson")  # whose run stays: there is none to go back to
     tell(engine, type="begin_lesson", name="merge")
     assert engine.run.before is not None
-    assert engine.run.before[0] is not own
+    assert engine.run.before.run is not own
 
 
 def test_one_of_the_catalogue_begins_by_its_name_with_another_seed_and_what_there_is_not_leaves_the_run() -> None:

@@ -61,6 +61,17 @@ def table_hash() -> str:
     return run_trial(table_trial())[0].state_hash
 
 
+def test_the_run_before_waits_through_trials_and_goes_on_as_it_was() -> None:
+    engine = an_engine(OFFICE)
+    own, known = engine.run, engine.run.session.state_hash()
+    for _ in range(2):
+        engine.begin_trial(short_trial(), "A title")
+        play(engine)
+    tell(engine, type="go_back")
+    assert (engine.run, engine.running, engine.run.session.state_hash()) == (own, False, known)
+    assert engine.snapshot().trial is None
+
+
 # ---------------------------------------------------------------- the same run
 
 
@@ -193,7 +204,7 @@ def test_of_every_command_it_is_known_what_it_does_to_a_trial() -> None:
     leaves = {
         m.Tag, m.Untag, m.Pause, m.Resume, m.Step, m.StepStage, m.SetSpeed, m.Reset, m.Inspect, m.WatchExperiment,
         m.Seek, m.BackToNow, m.GoOnFromHere, m.GoOnWithout, m.ChangeBranch, m.CompareBranch, m.Loop,
-        m.LeaveSituation, m.PutBookmark, m.RemoveBookmark,
+        m.GoBack, m.PutBookmark, m.RemoveBookmark,
         m.BeginLesson, m.Predict, m.Vote, m.ShowLesson, m.LessonAgain, m.EndLesson, m.RunUntil,
         m.CompareBrains, m.EndComparison,
     }  # fmt: skip

@@ -34,7 +34,6 @@ const view = (other = {}) => ({
     marks: [],
     altered: false,
     draws: null,
-    back: false,
   },
   ...other,
 });

@@ -52,7 +52,6 @@ export class Lesson {
     $("lesson-show").addEventListener("click", () => this.go());
     $("lesson-again").addEventListener("click", () => this.ask({ type: "lesson_again" }));
     $("lesson-next").addEventListener("click", () => this.next());
-    $("lesson-back").addEventListener("click", () => this.ask({ type: "end_lesson", back: true }));
     $("lesson-leave").addEventListener("click", () => this.ask({ type: "end_lesson" }));
     $("lesson-what").addEventListener("toggle", fitFormulas); // folded, they have no width
     $("lesson-fold").addEventListener("click", () => this.fold(this.box.dataset.folded !== "true"));
@@ -158,7 +157,6 @@ export class Lesson {
     $("lesson-again").hidden = !after;
     $("lesson-again").classList.toggle("go", isBroken(lesson));
     $("lesson-next").hidden = !after || !this.after;
-    $("lesson-back").hidden = !lesson.back;
     $("lesson-next").title = this.after ? `Next: ${this.after.title}` : "";
   }
 

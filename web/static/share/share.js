@@ -131,7 +131,6 @@ export class Opening {
     this.away = -1; // the run whose note was put away
     this.run = -1;
     window.addEventListener("hashchange", () => this.address());
-    $("situation-leave").addEventListener("click", () => link.ask({ type: "leave_situation" }));
     $("situation-close").addEventListener("click", () => {
       this.away = this.run;
       $("situation").hidden = true;
@@ -181,7 +180,7 @@ export class Opening {
     say(find(box, ".words"), words);
     const bar = /** @type {HTMLProgressElement} */ (find(box, "progress"));
     const playing = situation.state === "playing";
-    bar.hidden = $("situation-leave").hidden = !playing;
+    bar.hidden = !playing;
     bar.value = share;
   }
 }

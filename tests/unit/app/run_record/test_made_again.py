@@ -163,12 +163,12 @@ def test_while_it_plays_nobody_changes_it_and_it_can_be_left() -> None:
     for command in ({"type": "kidnap"}, {"type": "resume"}, {"type": "seek", "tick": 0}):
         with pytest.raises(ValueError, match="a situation is being played up to its moment"):
             tell(engine, **command)
-    tell(engine, type="leave_situation")
+    tell(engine, type="go_back")
     assert (engine.run.number, engine.run.session.tick_count, engine.running) == (1, 7, False)
     assert engine.snapshot().situation is None
     tell(engine, type="seek", tick=3)  # with its past
-    with pytest.raises(ValueError, match="no situation is being played"):
-        tell(engine, type="leave_situation")
+    with pytest.raises(ValueError, match="no run waits"):
+        tell(engine, type="go_back")
 
 
 def test_what_cannot_begin_leaves_the_run_as_it_is() -> None:
