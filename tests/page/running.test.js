@@ -128,6 +128,9 @@ test("a newcomer is welcomed once, and sees a kidnap through", () =>
       page.press("?");
       await page.click("#help-first");
       await until("it is shown", () => page.shown("#first"));
+      await until("this robot has explored", () => rows()[0] === "done");
+      await command("reset", { seed: 8 });
+      await until("another has not", () => rows()[0] === "now");
     },
     { first: true },
   ));

@@ -81,6 +81,7 @@ export class FirstMinuteCard {
     this.box = $("first");
     this.things = new FirstMinute();
     this.tick = 0;
+    this.run = -1;
     this.hurries = false;
     this.hastens = false; // runs quickly until it is found again
     /** @type {UntilView["state"] | null} */
@@ -127,8 +128,10 @@ export class FirstMinuteCard {
   }
 
   /** @param {State} state @param {PageFields} page */
-  at({ tick, trial, lesson, until }, { recording, time }) {
+  at({ tick, trial, lesson, until }, { recording, time, run }) {
     this.tick = tick;
+    const aside = Boolean(trial || lesson || recording || time?.past);
+    if (!aside && run !== this.run) [this.run, this.things] = [run, new FirstMinute()]; // what was done with another robot
     const ended = until?.state !== "running" && (this.until === "running" || this.things.found);
     if (this.hastens && ended) {
       if (this.finds && until?.state === "met") this.link.ask({ type: "resume" });
@@ -138,7 +141,7 @@ export class FirstMinuteCard {
     if (this.box.hidden) return;
     $("first-search").value = until?.progress ?? 0;
     this.things.at(tick);
-    this.box.classList.toggle("aside", Boolean(trial || lesson || recording || time?.past));
+    this.box.classList.toggle("aside", aside);
     this.draw();
   }
 
