@@ -430,7 +430,7 @@ class Engine:
         snapshots.trial = None if run.trial is None else run.trial.view()
         snapshots.situation = None if run.replay is None else run.replay.view()
         snapshots.lesson = None if run.lesson is None else run.lesson.view()
-        snapshots.back = run.before is not None
+        snapshots.back, snapshots.stepping = run.before is not None, bool(self.steps)
         snapshots.until = None if run.until is None else run.until.view()
         snapshots.time = self.time.view(self.slices.work)
         snapshots.pairs, snapshots.additions_off = self._pairs.of(self.config_to_begin, run.session.config)

@@ -70,7 +70,7 @@ class Snapshots:
         self.until: UntilView | None = None
         self.time: TimeView | None = None
         self.situation: SituationView | None = None
-        self.back = False
+        self.back = self.stepping = False
         self.pairs: tuple[PairChoice, ...] = ()
         self.additions_off = AdditionsOff()
         self.inspected = Inspect(type="inspect")  # at first nothing
@@ -179,6 +179,7 @@ class Snapshots:
             time=self.time,
             situation=self.situation,
             back=self.back,
+            stepping=self.stepping,
             beside=self.beside(),
             pairs=self.pairs,
             additions_off=self.additions_off,

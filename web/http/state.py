@@ -189,7 +189,7 @@ def _status(snapshot: Snapshot) -> dict[str, Any]:
         None if belief is None else belief.odds, snapshot.mode, None if goal is None else goal.state,
         running=snapshot.running, past=time is not None and time.past, faulty=snapshot.fault is not None,
         over=snapshot.recording is not None and snapshot.recording.over,
-        played_ahead=situation is not None and situation.state == "playing",
+        played_ahead=snapshot.stepping or (situation is not None and situation.state == "playing"),
     )  # fmt: skip
     return {"robot": asdict(robot_status(facts)), "goal": None if goal is None else asdict(goal_status(goal))}
 

@@ -406,6 +406,7 @@ class Snapshot:
     trip: Trip | None = None  # while the robot explores on purpose
     tags: tuple[TaggedPlace, ...] = ()  # in the order in which they were given
     back: bool = False  # a run waits whose place this one has
+    stepping: bool = False  # paused, but for ticks that were asked for
     situation: SituationView | None = None  # None: the run is no situation that was opened
     time: TimeView | None = None  # None: nothing of this run can be gone back to
     beside: BesideView | None = None  # None: one brain only

@@ -84,6 +84,15 @@ def test_the_page_is_told_of_the_walk_and_of_what_is_inspected() -> None:
     }  # fmt: skip
 
 
+def test_ticks_that_were_asked_for_are_no_pause() -> None:
+    words = [
+        page_fields(replace(SNAPSHOT, running=False, stepping=stepping))["status"]["robot"]["words"]
+        for stepping in (True, False)
+    ]
+    assert words[0] == "playing up to a moment"
+    assert words[1].startswith("paused")
+
+
 def test_a_place_of_the_office_is_an_experience_near_it_or_there_is_a_reason() -> None:
     """For who does not see the map."""
     x, y = SNAPSHOT.map.xy[3].tolist()
