@@ -10,7 +10,7 @@ from typing import Any, Literal, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from web.viewer.fits import HEIGHT, SIDE
+from web.viewer.fits import DEPTH, HEIGHT, SIDE, WIDTH
 
 View = Literal["all", "office", "pose", "map"]
 VIEWS: tuple[View, ...] = get_args(View)
@@ -64,6 +64,7 @@ def _block(size: tuple[float, float, float], y: float = 0.0) -> Points:
 SHEET = (11.0, 10.0, -0.5)  # of every plate: width, depth, y of the middle
 _PLATE = _block((SHEET[0], SHEET[1], 0.0), SHEET[2])
 _CELLS = np.vstack([_PLATE, _block((SIDE, SIDE, HEIGHT))])
+_OFFICE = np.vstack([_PLATE, _block((WIDTH + 0.2, DEPTH + 0.2, 0.65))])  # its walls, at their highest
 
 
 @dataclass(frozen=True)
@@ -107,12 +108,12 @@ def corners_of(view: View, office: bool, two: bool) -> Points:
     at = stands(office=office, two=two)
     cells = np.vstack([_CELLS + np.array((*here, 0.0)) for here in at.cells])
     maps = np.vstack([_PLATE + np.array((*here, 0.0)) for here in at.maps])
-    floor = _PLATE + np.array((*at.office, 0.0))
+    rooms = _OFFICE + np.array((*at.office, 0.0))
     if view in ("pose", "map"):
         return cells if view == "pose" else maps
     if view == "office" and office:
-        return floor
-    return np.vstack([cells, maps, floor] if office else [cells, maps])
+        return rooms
+    return np.vstack([cells, maps, rooms] if office else [cells, maps])
 
 
 def _fitted(points: Points, elevation_deg: float, azimuth_deg: float, fov_deg: float, aspect: float) -> Camera:

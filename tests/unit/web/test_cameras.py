@@ -22,6 +22,7 @@ from web.http.proxy import MOST_CLIENTS
 from web.http.proxy import Cameras as Pages
 from web.viewer.camera_views import FLIGHT_S, VIEWS, Camera, camera_for, corners_of, seen_by
 from web.viewer.cameras import REST_S, Cameras, Follower, follow_camera
+from web.viewer.plates.office_plate import HEIGHTS
 
 TURNED = Camera(np.ones(3), np.zeros(3), 0.5)
 
@@ -39,6 +40,8 @@ def test_every_view_looks_down_at_its_plates_and_shows_them_as_large_as_the_wind
             assert back[1] < 0 < 0.6 < back[2] / np.linalg.norm(back)
             assert np.abs(seen).max() < 1
             assert np.ptp(seen, axis=0).max() > (1.1 if two and aspect == 3.0 else 1.5)  # of 2
+    walls = corners_of("office", True, False)
+    assert walls[:, 2].max() >= max(HEIGHTS.values())  # the back wall is not cut
     assert len(corners_of("all", True, False)) > len(corners_of("all", False, False))  # an office is one plate more
 
 
