@@ -74,7 +74,7 @@ def test_greets_then_tells_the_state_and_only_new_events(served: House) -> None:
         assert state["state"] == served.client.get("/api/state").json()
         assert set(state["page"]) == {
             "run", "doing", "status", "fault", "real_time_factor", "title", "worlds", "places", "office", "inspected",
-            "walk", "vision", "pairs", "additions_off", "closure", "moving", "time", "trip", "recording", "situation",
+            "walk", "vision", "pairs", "additions_off", "closure", "moving", "time", "trip", "recording", "situation", "back",
         }  # fmt: skip
         assert until(socket, "events")["fresh"]
         news = Event(1000, 1.3, "kidnap", "moved by hand")
