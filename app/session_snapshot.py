@@ -270,6 +270,8 @@ def _seeker(seeker: Seeker, experiences: int) -> None:
         number(name, value, 0.0, LONGEST_S)
     leg = seeker._last_leg
     true(leg is None or leg is seeker._closer or isinstance(leg, Opening), "the last leg of a trip must be one")
+    if leg is seeker._closer:
+        whole("where a loop is to be closed", seeker._closer._goal, 0, experiences - 1)
     if isinstance(leg, Opening):
         whole("from where an opening was seen", leg.experience, 0, experiences - 1)
         pose("an opening", leg.place)

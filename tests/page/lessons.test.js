@@ -98,11 +98,14 @@ test("a lesson from the list to the sandbox, with a class that votes", () =>
 test("from a lesson the run before is a click away", () =>
   fresh(async (page) => {
     await command("step", { ticks: 123 });
+    page.press("2"); // the office, by its key
     await choose(page, "packet");
+    await until("the lesson turns to its own view", () => page.document.body.dataset.plate === "pose");
     await page.push("Back to your run", "#lesson");
     await until("the card is away", () => !page.shown("#lesson"));
     const now = await state();
     assert.deepEqual([now.tick, now.running, now.lesson], [123, false, null]);
+    await until("the office is seen again", () => page.document.body.dataset.plate === "office");
   }));
 
 test("each of the six demos is three clicks from a fresh page", long, () =>

@@ -69,10 +69,11 @@ const watched = new Watched({
   again: (wish) => command(wish),
   more: () => gallery.open(),
 });
+let ownView = viewer.view; // before a lesson turned to its own
 const goBack = /** @type {HTMLButtonElement[]} */ ([...document.querySelectorAll(".go-back")]);
 for (const button of goBack)
   button.addEventListener("click", async () => {
-    if (await command({ type: "go_back" }, "Your run goes on from where it was.")) viewer.show(viewer.chosen);
+    if (await command({ type: "go_back" }, "Your run goes on from where it was.")) viewer.show(ownView);
   });
 if (!watching) takeBrainFiles();
 const keeping = new Keeping(link, { viewer, panel, files, timeline, mayLeave });
@@ -97,6 +98,7 @@ link.on("state", (/** @type {{ state: State, page: PageFields }} */ detail) => {
   header.show(state, detail.page);
   watched.show(state, detail.page);
   for (const button of goBack) button.hidden = !detail.page.back;
+  if (!detail.page.back) ownView = viewer.view;
   aids.show(detail.page);
   panel.inspected(detail.page.inspected);
   timeline.at(state, detail.page.time);

@@ -41,16 +41,11 @@ export class Viewer extends EventTarget {
     this.soft = this.drawer !== null && isSoftware(this.drawer);
     /** @type {ViewName} */
     this.view = phone() ? "map" : "all";
-    /** By hand, not by a lesson. @type {ViewName} */
-    this.chosen = this.view;
     /** @type {number | string | null} */
     this.launch = null; // the server's, to notice that it has started anew
     this.buttons = /** @type {HTMLElement[]} */ ([...document.querySelectorAll("[data-view]")]);
     for (const button of this.buttons)
-      button.addEventListener("click", () => {
-        this.chosen = /** @type {ViewName} */ (button.dataset.view);
-        this.show(this.chosen);
-      });
+      button.addEventListener("click", () => this.show(/** @type {ViewName} */ (button.dataset.view)));
     this.mark();
     this.makeRoom();
     this.drawing = new Drawing(link, this);
