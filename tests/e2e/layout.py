@@ -17,6 +17,7 @@ BOXES = """([parts, least]) => {
     const apart = (a, b) => Math.min(a.right, b.right) - Math.max(a.left, b.left) <= 0.5
         || Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top) <= 0.5;
     const scrolls = getComputedStyle(document.documentElement).overflowY !== "hidden"; // the page as a whole
+    for (const line of document.querySelectorAll("#beside .since")) line.scrollLeft = line.scrollWidth;
     const bottom = scrolls ? document.documentElement.scrollHeight : innerHeight;
     const on_its_side = matchMedia("(pointer: coarse) and (max-height: 500px) and (min-width: 560px)").matches; // a phone
     const folded = on_its_side && document.getElementById("lesson")?.dataset.folded === "true";
@@ -58,7 +59,7 @@ BOXES = """([parts, least]) => {
             wrong.push(`${name(part)} is ${box.width.toFixed(0)} x ${box.height.toFixed(0)}`);
         if (part.tagName !== "SELECT" && part.scrollWidth > part.clientWidth + 1 && getComputedStyle(part).overflow !== "visible")
             wrong.push(`${name(part)} is cut`);
-        if (part.matches("#beside-end")) { // it stands first in a line that is scrolled
+        if (part.matches("#beside-end")) { // it stays, however far its line is scrolled
             const line = part.parentElement.getBoundingClientRect();
             if (box.left < line.left - 0.5 || box.right > line.right + 0.5) wrong.push(`${name(part)} is out of sight`);
         }
