@@ -20,9 +20,9 @@ from latex2mathml.converter import convert
 
 from app.code_version import code_version
 from app.config import Config
-from app.experiments.results import published_cells
+from app.experiments.results import published
 from app.experiments.store import Store, StoredTrial, default_path
-from app.experiments.summary import CellSummary, summarise, words
+from app.experiments.summary import CellSummary, leading, summarise, words
 from app.protocol.experiment import EngineName, Experiment, Score, catalogue, first_levels
 from app.protocol.lesson import Formula, Lesson, all_lessons, own_lessons
 from app.protocol.lesson import catalogue as lesson_catalogue
@@ -52,6 +52,7 @@ FIGURES = "figures"  # the folder beside the store for those that are drawn here
 
 EARLIER = "These trials were run by an earlier version of the program: played today, they may go otherwise."
 PUBLISHED = "These are the program's own results, as in docs/results.md; none of these trials was run here yet."
+OLDER = "They are of an earlier version: played today, a trial may go otherwise."
 QUICK = "These are short trials, run to see that the experiment works; they say little."
 MARGIN_M = 0.3  # of a plan, round the walls
 
@@ -81,7 +82,7 @@ class StoredGallery:
         except ValueError as error:
             trials, why = [], str(error)
         done = sum(not trial.error for trial in trials)
-        results = _results_of(experiment, trials, _published(name))
+        results = _results_of(experiment, trials, *_of_program(name))
         if why:
             results.note = f"The trials that were run here cannot be shown: {why}. {results.note}".strip()
         return Detail(card=self._card(experiment, done), results=results)
@@ -144,10 +145,10 @@ def _experiments() -> dict[str, Experiment]:
     return {experiment.name: experiment for experiment in catalogue()}
 
 
-def _published(name: str) -> list[CellSummary]:
+def _of_program(name: str) -> tuple[list[CellSummary], list[StoredTrial]]:
     with contextlib.suppress(ValueError):  # an installed program may come without its documents
-        return published_cells(name)
-    return []
+        return published(name)
+    return [], []
 
 
 @lru_cache
@@ -155,16 +156,19 @@ def _world(name: str) -> World:
     return open_world(name)
 
 
-def _results_of(experiment: Experiment, stored: Sequence[StoredTrial], published: Sequence[CellSummary]) -> Results:
+def _results_of(
+    experiment: Experiment, stored: Sequence[StoredTrial], shown: Sequence[CellSummary], behind: list[StoredTrial]
+) -> Results:  # fmt: skip
     """The grid of an experiment. stored: all its trials, the oldest first. Those shown are of one kind, the best there is.
 
-    published: what stands in docs/results.md, for want of trials.
+    shown: what stands in docs/results.md, for want of trials; behind: the trials behind it.
     """
     trials, note = _chosen([trial for trial in stored if not trial.error])
-    cells = summarise(experiment, trials) if trials else published
-    if not trials and published:
-        note = PUBLISHED
-    score = next((score for score in experiment.scores if score.rate is not None), experiment.scores[0])
+    cells = summarise(experiment, trials) if trials else shown
+    if not trials and shown:
+        trials = behind
+        note = PUBLISHED if all(trial.version == code_version() for trial in behind) else f"{PUBLISHED} {OLDER}"
+    score = leading(experiment)
     found = {(cell.engine, cell.levels): cell for cell in cells if score.label in cell.values}
     values = [cell.values[score.label].value for cell in found.values()]
     finite = [value for value in values if math.isfinite(value)]

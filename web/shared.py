@@ -21,6 +21,7 @@ from sim2d.world.world_schema import LISTS, WorldFile
 from web.http.commands import MODELS
 from web.http.security import LOOKS
 from web.messages import EditStep, EventKind, GoalState, OfficeList
+from web.messages.commands import EngineName
 from web.panel.panel import TABS
 from web.themes import THEMES
 from web.viewer.camera_views import VIEWS
@@ -42,6 +43,7 @@ def names_text() -> str:
         "EVENT_KINDS": get_args(EventKind),
         "GOAL_STATES": get_args(GoalState),
         "OFFICE_LISTS": get_args(OfficeList),
+        "ENGINES": get_args(EngineName),
         "SCRIPT_ACTIONS": world["_EventItem"]["properties"]["do"]["enum"],
         "WALL_KINDS": world["_WallItem"]["properties"]["kind"]["enum"],
         "ADDITIONS": [

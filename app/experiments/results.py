@@ -16,7 +16,17 @@ from typing import Any, cast
 
 from app.code_version import code_version
 from app.experiments.store import StoredTrial
-from app.experiments.summary import ENGINE_WORDS, CellSummary, Estimate, found, summarise, words, words_of
+from app.experiments.summary import (
+    ENGINE_WORDS,
+    CellKey,
+    CellSummary,
+    Estimate,
+    found,
+    leading,
+    summarise,
+    words,
+    words_of,
+)
 from app.experiments.verdicts import HEADS, JUDGED, rows, verdicts
 from app.protocol.experiment import Experiment
 
@@ -55,17 +65,24 @@ def gathered(runs: Iterable[tuple[Experiment, Sequence[StoredTrial]]]) -> dict[s
     Quick trials do not count.
     """
     full = [(experiment, [trial for trial in trials if not trial.quick]) for experiment, trials in runs]
+    return {"experiments": {experiment.name: _run(experiment, trials) for experiment, trials in full if trials}}
+
+
+def _run(experiment: Experiment, trials: Sequence[StoredTrial]) -> dict[str, Any]:
+    each: dict[CellKey, list[StoredTrial]] = {}
+    for trial in sorted(trials, key=lambda trial: (trial.seed, trial.id)):
+        if not trial.error:
+            each.setdefault((trial.engine, trial.levels), []).append(trial)
+    score = leading(experiment)
+    names = score.rate or (str(score.score),)
     return {
-        "experiments": {
-            experiment.name: {
-                "definition": definition_digest(experiment),
-                "version": next((t.version for t in trials if t.version), code_version()),
-                "seeds": _ends(sorted({trial.seed for trial in trials})),
-                "cells": [_row(cell) for cell in summarise(experiment, trials)],
-            }
-            for experiment, trials in full
-            if trials
-        },
+        "definition": definition_digest(experiment),
+        "version": next((trial.version for trial in trials if trial.version), code_version()),
+        "seeds": _ends(sorted({trial.seed for trial in trials})),
+        "cells": [
+            {**_row(cell), "trials": [_trial_row(trial, names) for trial in each.get((cell.engine, cell.levels), [])]}
+            for cell in summarise(experiment, trials)
+        ],
     }
 
 
@@ -128,11 +145,24 @@ def write_results(
         old = {name: known[name] for name in names if name in known and name not in data["experiments"]}
         merged = {**old, **data["experiments"]}
         data = {"experiments": {name: merged[name] for name in names if name in merged}}
-    text = json.dumps(data, indent=1, ensure_ascii=False, allow_nan=False)
-    path.write_text(text + "\n", encoding="utf-8")
+    path.write_text(_text_of(data), encoding="utf-8")
     markdown = folder / "results.md"
     markdown.write_text(results_markdown(data, experiments), encoding="utf-8")
     return path, markdown
+
+
+def _text_of(data: Mapping[str, Any]) -> str:
+    """JSON with a line for each cell, so that what has changed can be seen."""
+
+    def text(value: object) -> str:
+        return json.dumps(value, ensure_ascii=False, allow_nan=False)
+
+    runs = []
+    for name, run in data["experiments"].items():
+        head = ", ".join(f"{text(key)}: {text(value)}" for key, value in run.items() if key != "cells")
+        cells = ",\n".join(map(text, run["cells"]))
+        runs.append(f'{text(name)}: {{{head}, "cells": [\n{cells}\n]}}')
+    return '{"experiments": {\n' + ",\n".join(runs) + "\n}}\n"
 
 
 def read_results(path: Path) -> dict[str, Any]:
@@ -147,9 +177,19 @@ def read_results(path: Path) -> dict[str, Any]:
     return {"experiments": experiments}
 
 
-def published_cells(name: str, path: Path = DOCS / "results.json") -> list[CellSummary]:
-    """The cells of an experiment as they stand in docs/results.json; none if it is not there."""
-    return cells_of(read_results(path), name)
+def published(name: str, path: Path = DOCS / "results.json") -> tuple[list[CellSummary], list[StoredTrial]]:
+    """The cells of an experiment as they stand in docs/results.json, and its trials; none if it is not there.
+
+    Each trial has what its leading score is made of, and no id: nobody has run it here.
+    """
+    data = read_results(path)
+    run = data["experiments"].get(name)
+    trials = [
+        StoredTrial("", row["engine"], tuple(row["levels"]), seed, scores, moment_s, moment, version=run["version"])
+        for row in (run["cells"] if run else ())
+        for seed, moment_s, moment, scores in row.get("trials", ())
+    ]
+    return cells_of(data, name), trials
 
 
 def cells_of(data: Mapping[str, Any], name: str) -> list[CellSummary]:
@@ -248,6 +288,11 @@ def _lines(rows: Sequence[Sequence[str]]) -> str:
 def _row(cell: CellSummary) -> dict[str, Any]:
     values = {label: [_number(part) for part in astuple(each)] for label, each in cell.values.items()}
     return {"engine": cell.engine, "levels": list(cell.levels), "n": cell.n, "failed": cell.failed, "values": values}
+
+
+def _trial_row(trial: StoredTrial, names: Iterable[str]) -> list[Any]:
+    scores = {name: _number(trial.scores[name]) for name in names if name in trial.scores}
+    return [trial.seed, round(trial.moment_s, 1), trial.moment_words, scores]
 
 
 def _cell(row: Mapping[str, Any]) -> CellSummary:

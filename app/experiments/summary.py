@@ -62,6 +62,11 @@ def summarise(experiment: Experiment, trials: Iterable[StoredTrial]) -> list[Cel
     return [_summary(experiment, *key, groups[key]) for key in sorted(groups, key=place_in(experiment))]
 
 
+def leading(experiment: Experiment) -> Score:
+    """By what a trial is told to have gone well: the first rate, or the first score where none is a rate."""
+    return next((score for score in experiment.scores if score.rate is not None), experiment.scores[0])
+
+
 def place_in(experiment: Experiment) -> Callable[[CellKey], tuple[tuple[int, int], CellKey]]:
     """By what to sort engines and levels, so that they are in the order of the experiment's cells."""
     engines = list(experiment.engines)

@@ -41,6 +41,28 @@ test("one is watched, and an order of one's own ends it", () =>
     assert.equal((await state()).trial, null);
   }));
 
+test("one is found by a figure, and a trial that fell short is played from its moment", () =>
+  fresh(async (page) => {
+    page.answers("/api/experiments/table", (/** @type {ExperimentDetail} */ { card, results }) => {
+      const dot = { id: "", seed: 5, quick: false, good: 3, of: 3, words: "3 of 3", moment_s: 1250, moment: "printer" };
+      const dots = [dot, { ...dot, seed: 9, good: 1, words: "1 of 3" }];
+      const cells = results.cells.map((cell) => ({ ...cell, n: 2, words: "67 % (30-90)", dots }));
+      return { card, results: { ...results, cells } };
+    });
+    await page.click("#lessons");
+    await page.click("#lessons-experiments");
+    await until("they are there", () => page.all(".card").length > 9);
+    page.fill("#gallery-search", "figure 12");
+    await until("few are left", () => page.all(".card:not([hidden])").length < 6);
+    await page.click(".card[data-name=table] .trials");
+    await page.says("#cell-words", "1 of them fell short.");
+    await page.click("#cell-short");
+    await page.says("#trial", "going to the moment");
+    const { seed, engine, levels } = (await state()).trial;
+    assert.deepEqual([seed, engine, levels], [9, "ours", ["0 %", "64 x 64"]]);
+    await command("reset", { seed: 3 });
+  }));
+
 test("there and back, by keyboard", () =>
   fresh(async (page) => {
     page.press("g");

@@ -65,9 +65,9 @@ class Card(BaseModel):
 
 
 class Dot(BaseModel):
-    """A trial that was run here."""
+    """A trial that was run here, or for the program's own results."""
 
-    id: str
+    id: str  # "": of the program's own, which a store need not have
     seed: int
     quick: bool
     good: int | None  # so many of its goals were reached; None: this score has no goals

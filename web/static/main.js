@@ -69,7 +69,8 @@ const watched = new Watched({
   again: (wish) => command(wish),
   more: () => gallery.open(),
 });
-let ownView = viewer.view; // before a lesson turned to its own
+let ownView = viewer.view; // as the run was left: a lesson turns to its own
+let away = false; // whether a run waits
 const goBack = /** @type {HTMLButtonElement[]} */ ([...document.querySelectorAll(".go-back")]);
 for (const button of goBack)
   button.addEventListener("click", async () => {
@@ -98,7 +99,8 @@ link.on("state", (/** @type {{ state: State, page: PageFields }} */ detail) => {
   header.show(state, detail.page);
   watched.show(state, detail.page);
   for (const button of goBack) button.hidden = !detail.page.back;
-  if (!detail.page.back) ownView = viewer.view;
+  if (detail.page.back && !away) ownView = viewer.view; // a run that stands still sends nothing, so not before
+  away = Boolean(detail.page.back);
   aids.show(detail.page);
   panel.inspected(detail.page.inspected);
   timeline.at(state, detail.page.time);
@@ -181,6 +183,10 @@ on("places", () => places.open(false));
 on("present", () => presenter.turn(!presenter.on));
 on("lessons", () => lessons.open());
 on("experiments", () => gallery.open());
+on("lessons-experiments", () => {
+  lessons.dialog.close();
+  gallery.open();
+});
 on("restart-same", () => state && restart(state.seed));
 on("restart-new", () => restart(crypto.getRandomValues(new Uint16Array(1))[0] % 10000));
 on("brain-save", () => {

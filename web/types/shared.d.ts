@@ -100,6 +100,7 @@ type IndexIds = {
   "cancel": HTMLElementTagNameMap["button"];
   "cell-dots": HTMLElementTagNameMap["ul"];
   "cell-none": HTMLElementTagNameMap["p"];
+  "cell-short": HTMLElementTagNameMap["button"];
   "cell-title": HTMLElementTagNameMap["h3"];
   "cell-watch": HTMLElementTagNameMap["button"];
   "cell-words": HTMLElementTagNameMap["p"];
@@ -185,6 +186,7 @@ type IndexIds = {
   "gallery-dialog": HTMLElementTagNameMap["dialog"];
   "gallery-none": HTMLElementTagNameMap["p"];
   "gallery-one": HTMLElementTagNameMap["div"];
+  "gallery-search": HTMLElementTagNameMap["input"];
   "gallery-title": HTMLElementTagNameMap["h2"];
   "gallery-wait": HTMLElementTagNameMap["p"];
   "gallery-wrong": HTMLElementTagNameMap["p"];
@@ -245,6 +247,7 @@ type IndexIds = {
   "lessons": HTMLElementTagNameMap["button"];
   "lessons-close": HTMLElementTagNameMap["button"];
   "lessons-dialog": HTMLElementTagNameMap["dialog"];
+  "lessons-experiments": HTMLElementTagNameMap["button"];
   "lessons-list": HTMLElementTagNameMap["div"];
   "lessons-title": HTMLElementTagNameMap["h2"];
   "lessons-wrong": HTMLElementTagNameMap["p"];

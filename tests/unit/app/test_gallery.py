@@ -9,7 +9,7 @@ import pytest
 
 from app.experiments.store import Outcome, Store, StoredTrial
 from app.experiments.summary import summarise
-from app.gallery import EARLIER, PUBLISHED, QUICK, StoredGallery
+from app.gallery import EARLIER, OLDER, PUBLISHED, QUICK, StoredGallery
 from app.protocol.course import Moment
 from app.protocol.experiment import chosen_trial, find_experiment, first_levels
 from app.protocol.trial import Result, Trial
@@ -24,7 +24,7 @@ FIRST = ("0 %", "64 x 64")
 @pytest.fixture(autouse=True)
 def nothing_published(monkeypatch: pytest.MonkeyPatch) -> None:
     """Whatever stands in docs/results.md today."""
-    monkeypatch.setattr("app.gallery.published_cells", lambda _name: [])
+    monkeypatch.setattr("app.gallery.published", lambda _name: ([], []))
 
 
 @pytest.fixture
@@ -94,8 +94,10 @@ def test_what_is_not_of_this_program_and_whole_is_shown_only_for_want_of_better(
         found = results(store.path)
         return found.note, cell(found).shade, [(dot.quick, dot.good) for dot in cell(found).dots]
 
-    published = summarise(TABLE, [StoredTrial("a", "ours", FIRST, 1, {"goals": 3.0, "reached": 3.0}, 1.0, "")])
-    monkeypatch.setattr("app.gallery.published_cells", lambda _name: published)
+    made = [StoredTrial("", "ours", FIRST, 1, {"goals": 3.0, "reached": 3.0}, 1.0, "", version="then")]
+    monkeypatch.setattr("app.gallery.published", lambda _name: (summarise(TABLE, made), made))
+    assert seen() == (f"{PUBLISHED} {OLDER}", 1.0, [(False, 3)])
+    monkeypatch.setattr("app.gallery.published", lambda _name: (summarise(TABLE, made), []))
     assert seen() == (PUBLISHED, 1.0, [])
     assert (cell(results(store.path)).n, cell(results(store.path)).words[:5]) == (1, "100 %")
     store.add([ended(trial(1, quick=True), 0)])

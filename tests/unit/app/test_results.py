@@ -8,7 +8,8 @@ from dataclasses import replace
 import pytest
 
 from app.experiments import results
-from app.experiments.results import gathered, outdated, read_results, results_markdown, write_results
+from app.experiments.results import gathered, outdated, published, read_results, results_markdown, write_results
+from app.experiments.summary import leading, summarise
 from app.protocol.experiment import catalogue
 from tests.unit.app.made_trials import experiment, figure, trials
 
@@ -33,6 +34,21 @@ def test_numbers_survive_the_file(tmp_path):
     assert row.count("|") == 1 + 3 + 3 + 2 + 2 + 2 + 2  # levels and n; goals with the paper's value, error, recovered
     write_results([(made, stored)], tmp_path)
     assert markdown.read_text() == text
+
+
+@pytest.mark.parametrize("made", [experiment(), *catalogue()], ids=lambda made: made.name)
+def test_the_trials_of_a_cell_come_to_its_leading_score(made, tmp_path):
+    """Of a file that was just written and of that in the docs, whose older experiments tell no trials."""
+    path = write_results([(made, trials(made))], tmp_path)[0] if made.name == "made" else results.DOCS / "results.json"
+    cells, behind = published(made.name, path)
+    again = {(cell.engine, cell.levels): cell for cell in summarise(made, behind)}
+    assert made.name != "made" or len(again) == len(cells)
+    for cell in cells:
+        if now := again.get((cell.engine, cell.levels)):
+            label = leading(made).label
+            then = cell.values[label]
+            assert (now.n, now.values[label].n) == (cell.n, then.n)
+            assert now.values[label].value == pytest.approx(then.value, rel=1e-5, nan_ok=True)
 
 
 def test_bad_results_are_written_too(tmp_path):

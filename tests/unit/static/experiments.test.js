@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import * as gallery from "../../../web/static/experiments/grid.js";
-import { facts, lengthWords, trialWords } from "../../../web/static/experiments/gallery.js";
+import { facts, lengthWords, matches, trialWords } from "../../../web/static/experiments/gallery.js";
 
 /** @type {Dot} */
 const dot = { id: "a", seed: 7, quick: false, good: 2, of: 3, words: "2 of 3", moment_s: 65, moment: "printer: late" };
@@ -31,6 +31,13 @@ test("a length is in round words, and a card's facts leave out what there is non
   assert.equal(gallery.firstEngine({ ...full, engines: ["paper"] }), "paper");
 });
 
+test("a card is found by its words, its paper and each figure of a range, whole numbers only", () => {
+  const one = { ...card([]), title: "Size of the pose cells", paper: "D 5-6, table 1, figures 6 to 15" };
+  for (const wanted of ["", "figure 9", "Fig 15", "acra 2006", "pose office", "table 1", "size"])
+    assert.ok(matches(one, wanted), wanted);
+  for (const wanted of ["figure 16", "figure 1.5", "2005", "kidnap"]) assert.ok(!matches(one, wanted), wanted);
+});
+
 test("the first axis goes across and the second down; of the others one level is shown", () => {
   const axes = [axis("a", "1", "2"), axis("b", "x", "y"), axis("c", "p", "q")];
   const cells = axes[0].levels.flatMap((a) => axes[1].levels.flatMap((b) => axes[2].levels.map((c) => cell(a, b, c))));
@@ -46,6 +53,10 @@ test("a dot tells by its look, its face and its words how the trial went", () =>
   assert.deepEqual(
     [3, 2, 0, null].map((good) => gallery.lookOf({ ...dot, good })),
     ["all", "some", "none", "plain"],
+  );
+  assert.deepEqual(
+    [3, 2, 0, null].map((good) => gallery.fellShort({ ...dot, good })),
+    [false, true, true, false],
   );
   assert.equal(gallery.dotFace(dot), "2/3");
   assert.equal(gallery.dotFace({ ...dot, good: null, of: null, words: "0.12 m" }), "0.12 m");

@@ -35,6 +35,19 @@ export function facts({ axes, seconds, done }) {
   return words.join(" · ");
 }
 
+/** A card by all that it says; "figures 6 to 15" is every figure between. @param {Card} card @param {string} wanted */
+export function matches({ title, paper, asks, found, world }, wanted) {
+  const tokens = (/** @type {string} */ words) => words.toLowerCase().match(/[\p{L}]+|[\d.]*\d/gu) ?? [];
+  const said = `${title} ${sourceWords(paper)} ${asks} ${found} ${world}`;
+  const between = [...paper.matchAll(/(\d+) to (\d+)/g)].flatMap(([, from, to]) =>
+    Array.from({ length: Math.max(0, +to - +from) }, (_, k) => String(+from + k)),
+  );
+  const known = [...tokens(said), ...between];
+  return tokens(wanted).every((token) =>
+    known.some((word) => (/\d/.test(token) ? word === token : word.startsWith(token))),
+  );
+}
+
 /**
  * One experiment: its figure, what it asks, and the buttons.
  * @param {Card} card
@@ -92,6 +105,7 @@ export class Gallery {
     this.doing = ""; // what is going on before the engine's first tick
     $("gallery-close").addEventListener("click", () => this.dialog.close());
     $("gallery-back").addEventListener("click", () => this.back());
+    $("gallery-search").addEventListener("input", () => this.search());
     this.dialog.addEventListener("click", ({ target }) => target === this.dialog && this.dialog.close());
   }
 
@@ -112,6 +126,17 @@ export class Gallery {
       }),
     );
     $("gallery-cards").replaceChildren(...made);
+    this.search();
+  }
+
+  /** Leave the cards that have what is searched for. */
+  search() {
+    const wanted = /** @type {HTMLInputElement} */ ($("gallery-search")).value;
+    const there = this.cards.filter((card) => matches(card, wanted)).map(({ name }) => name);
+    for (const card of $("gallery-cards").querySelectorAll("li"))
+      card.hidden = !there.includes(card.dataset.name ?? "");
+    if (this.cards.length)
+      $("gallery-none").textContent = there.length ? "" : "No experiment says this. Try a figure, a paper or a place.";
   }
 
   /** @param {Card} card @param {EngineName} engine */

@@ -4,12 +4,17 @@ import { clock, ended } from "../ui/words.js";
 import { $, icon, make } from "../ui/elements.js";
 
 /** @type {Record<EngineName, string>} */
-const ENGINES = { ours: "our rules", paper: "the paper's rules" };
+const RULES = {
+  ours: "our rules",
+  paper: "the paper's rules",
+  "paper-2005": "the rules of 2005",
+  "paper-2006": "the rules of 2006",
+};
 const MOST_SEEDS = 50;
 const BEFORE_S = 10; // a trial plays from so long before its moment
 
 /** @param {EngineName} engine */
-export const engineWords = (engine) => ENGINES[engine];
+export const engineWords = (engine) => RULES[engine];
 
 /** The engine that is chosen at first. @param {Card} card */
 export const firstEngine = ({ engines }) => (engines.includes("ours") ? "ours" : engines[0]);
@@ -43,6 +48,9 @@ export function lookOf({ good, of }) {
   return good > 0 ? "some" : "none";
 }
 
+/** Whether it missed something of what it was to reach. @param {Dot} dot */
+export const fellShort = (dot) => ["some", "none"].includes(lookOf(dot));
+
 /** What stands on a dot. @param {Dot} dot */
 export const dotFace = ({ good, of, words }) => (of ? `${good}/${of}` : words);
 
@@ -71,6 +79,10 @@ export class Grid {
     /** @type {Cell | null} */
     this.cell = null;
     $("cell-watch").addEventListener("click", () => this.cell && watch(this.wish(this.cell)));
+    $("cell-short").addEventListener("click", () => {
+      const dot = this.cell?.dots.find(fellShort);
+      if (this.cell && dot) watch(this.wishFor(this.cell, dot));
+    });
   }
 
   /** @param {ExperimentDetail} detail @param {EngineName} [engine] */
@@ -164,9 +176,12 @@ export class Grid {
     for (const button of $("one-grid").querySelectorAll("button"))
       button.setAttribute("aria-pressed", String(button.dataset.levels === JSON.stringify(cell.levels)));
     $("cell-title").textContent = [...cell.levels, engineWords(this.engine)].join(", ");
+    const short = cell.dots.filter(fellShort).length;
+    const fell = results.is_rate && cell.dots.length ? ` ${short || "None"} of them fell short.` : "";
     $("cell-words").textContent = cell.n
-      ? `${results.score}: ${cell.words}, ${count(cell.n)}.${cell.dots.length ? PLAYS : ""}`
+      ? `${results.score}: ${cell.words}, ${count(cell.n)}.${fell}${cell.dots.length ? PLAYS : ""}`
       : "";
+    $("cell-short").hidden = !short;
     $("cell-none").hidden = cell.dots.length > 0;
     $("cell-none").textContent =
       `None of these was run here yet, so a dot plays its trial from the start. To run them all: ratslam experiment ${card.name}`;
@@ -195,9 +210,13 @@ export class Grid {
     button.ariaLabel = dotWords(dot, results);
     button.dataset.look = lookOf(dot);
     button.append(make("b", { textContent: dotFace(dot) }), make("small", { textContent: String(dot.seed) }));
-    const { seed, quick, id: trial, moment_s } = dot;
-    button.addEventListener("click", () => this.watch({ ...this.wish(cell), seed, quick, trial, moment_s }));
+    button.addEventListener("click", () => this.watch(this.wishFor(cell, dot)));
     return make("li", {}, button);
+  }
+
+  /** @param {Cell} cell @param {Dot} dot @returns {WatchExperiment} */
+  wishFor(cell, { seed, quick, id, moment_s }) {
+    return { ...this.wish(cell), seed, quick, ...(id ? { trial: id } : {}), moment_s };
   }
 
   /** @param {Cell} cell @returns {WatchExperiment} */
