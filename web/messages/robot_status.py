@@ -132,6 +132,11 @@ def odds_words(odds: float) -> str:
     return f"{odds:.0f}:1" if odds < 1000 else "over 1000:1"
 
 
+def packet_words(number: int, mass: float, alone: bool) -> str:
+    """Its number, and its part of the activity where it has rivals. A packet alone has all of it, and may be wrong."""
+    return f"packet {number}" if alone else f"{number}: {share_words(mass)}"
+
+
 def share_words(share: float) -> str:
     """12 %, or less than one."""
     return f"{100 * share:.0f} %" if share >= 0.01 else "< 1 %"

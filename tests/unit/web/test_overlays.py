@@ -42,10 +42,22 @@ def test_the_picture_lies_where_the_map_lies() -> None:
     met = np.array([[-2.0 + 7 * 0.25, -1.5 + 13 * 0.25]])  # the middle of what stands there, in the map
     for turn in (0.0, 1.1, -2.5):
         fit = MapFit(0.8, turn, (1.0, 0.5))
-        floor = overlays.map_floor(OccupancyPicture(probability, (-2.0, -1.5), 0.25), fit, DARK)
+        floor = overlays.map_floor(OccupancyPicture(probability, (-2.0, -1.5), 0.25), fit, DARK, np.zeros((0, 2)))
         assert floor.shape == (DEPTH * overlays.PX_PER_UNIT, WIDTH * overlays.PX_PER_UNIT, 3)
         assert sum(map(int, colour(met))) < sum(DARK.floor) - 30
         assert colour(met + np.array((2.0, 0.0))) == DARK.floor
+
+
+def test_floor_within_a_metre_of_where_the_robot_has_been_is_the_brighter() -> None:
+    free = OccupancyPicture(np.full((24, 24), 0.05, np.float32), (-3.0, -3.0), 0.25)
+    been, angle = np.array([[0.5, -0.5], [40.0, 0.0]]), 0.7  # the second is beside the plate
+    for palette, fit in ((DARK, MapFit(0.8, 0.4, (0.0, 0.0))), (LIGHT, MapFit(0.3, -2.0, (1.0, 0.5)))):
+        floor = overlays.map_floor(free, fit, palette, been)
+        places = been[0] + np.outer((0.0, 0.85, 1.15, 1.8), (np.cos(angle), np.sin(angle)))
+        x, y = fit.to_plate(places).T
+        rows, columns = (DEPTH / 2 - y) * overlays.PX_PER_UNIT, (x + WIDTH / 2) * overlays.PX_PER_UNIT
+        inside, near, beyond, far = floor[rows.astype(int), columns.astype(int)].astype(int).sum(axis=1)
+        assert inside == near > beyond == far > sum(palette.floor)
 
 
 def test_cells_are_occupied_where_they_are() -> None:

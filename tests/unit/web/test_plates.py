@@ -98,7 +98,7 @@ def test_packets_bear_their_ids_whatever_their_rank(stage: Bench) -> None:
     for packets in ((first, second), swapped):
         stage.show(replace(s, pose_cells=replace(s.pose_cells, packets=packets)), 10.0)
         for k, packet in enumerate(packets):
-            assert stage.says(f"/pose_cells/packet_{k}", f"{packet.id}   {100 * packet.mass:.0f} %")
+            assert stage.says(f"/pose_cells/packet_{k}", f"{packet.id}: {100 * packet.mass:.0f} %")
 
 
 def test_empty_plates_say_why(stage: Bench) -> None:

@@ -122,10 +122,12 @@ export class Lesson {
     $("lesson-title").focus({ preventScroll: true });
   }
 
-  /** The plate and the tab in which it happens. */
+  /** The plate and the tab of the question; then the plate that is to be watched first. */
   look() {
     if (!this.text) return;
-    this.viewer.show(this.text.view);
+    const watched = VIEWS.find((name) => name === this.text?.watch[0]?.at);
+    const turns = this.now?.state === "showing" && this.text.view !== "all";
+    this.viewer.show((turns && watched) || this.text.view);
     const tab = tabOf(this.text.tab, TABS);
     if (tab) this.panel.open(tab);
   }

@@ -334,7 +334,8 @@ class Why {
 /** What was said of a place, part by part: upwards for it, downwards against it. @param {[number, number][]} said s, nats */
 function bars(said) {
   const [wide, high] = [100, 34];
-  const most = Math.max(1, ...said.map(([, nats]) => Math.abs(nats)));
+  const longest = Math.max(...said.map(([, nats]) => Math.abs(nats)));
+  const most = Math.max(1, longest); // the scale: little said is drawn small
   const each = wide / said.length;
   const drawn = said.map(([, nats], k) => {
     const tall = (Math.abs(nats) / most) * (high / 2 - 5);
@@ -351,7 +352,7 @@ function bars(said) {
     ...drawn,
     svg("text", { x: 0, y: high - 0.6 }, `${first} s`),
     svg("text", { x: wide, y: high - 0.6, "text-anchor": "end" }, `${last} s`),
-    svg("text", { x: 0, y: 3.6 }, `highest bar ${most.toFixed(1)} nats; ${sum.toFixed(1)} in all`),
+    svg("text", { x: 0, y: 3.6 }, `longest bar ${longest.toFixed(1)} nats; ${sum.toFixed(1)} in all`),
   );
 }
 

@@ -2,6 +2,7 @@
 // a level on says so in the page (`data-from`). Each viewer's choice is remembered.
 
 import { $, keep, kept } from "./elements.js";
+import { toast } from "./words.js";
 
 /** @typedef {(typeof LEVELS)[number]} Level */
 export const LEVELS = /** @type {const} */ (["watch", "explore", "lab"]);
@@ -25,7 +26,10 @@ export class Levels extends EventTarget {
 
   /** Something is about to be shown that is there from this level on. What the viewer chose stays kept. @param {Level} name */
   need(name) {
-    if (!this.has(name)) this.show(name);
+    if (this.has(name)) return;
+    this.show(name);
+    const title = $(`level-${name}`).textContent;
+    toast(`This is in ${title}: the page shows ${title} now.`, { notice: true });
   }
 
   /** @param {Level} name */

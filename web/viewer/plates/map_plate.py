@@ -145,7 +145,8 @@ class MapPlate(Plate):
         """Shows below the map what the sonars met; None: nothing."""
         self._picture = picture
         if picture is not None:
-            self._occupancy.image = images.upright(map_floor(picture, self.fit, self.palette))
+            been = np.zeros((0, 2)) if self._layer is None else self._layer.xy
+            self._occupancy.image = images.upright(map_floor(picture, self.fit, self.palette, been))
         self._occupancy.visible = picture is not None
 
     def set_times(self, times: TimesLayer) -> None:

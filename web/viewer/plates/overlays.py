@@ -15,27 +15,51 @@ from web.viewer.primitives.palette import Palette, Rgb
 
 PX_PER_UNIT = 48  # of the map plate
 SURE = 0.45  # how far the probability must be from one half for the full colour
+COVERED_M, SEEN = 1.0, 0.35  # floor no nearer to an experience is only seen, and so much as bright
 
 
-def occupancy_colours(probability: NDArray[np.float32], ground: Pixels, palette: Palette) -> Pixels:
-    """`ground` (h, w, 3), brighter where the floor is free and dark where something stands; probability: (h, w)."""
-    sure = np.clip((np.asarray(probability, np.float32) - 0.5) / SURE, -1, 1)[..., None]
+def occupancy_colours(
+    probability: NDArray[np.float32], ground: Pixels, palette: Palette, covered: NDArray[np.bool_] | None = None
+) -> Pixels:
+    """`ground` (h, w, 3), brighter where the floor is free, the more where it is `covered`, and dark where something stands;
+    probability: (h, w)."""
+    sure = np.clip((np.asarray(probability, np.float32) - 0.5) / SURE, -1, 1)
+    if covered is not None:
+        sure = np.where((sure < 0) & ~covered, SEEN * sure, sure)
+    sure = sure[..., None]
     to = np.where(sure < 0, _colour(palette.free), _colour(palette.occupied))
     return (ground + (to - ground) * np.abs(sure) * 0.9).astype(np.uint8)
 
 
-def map_floor(picture: OccupancyPicture, fit: MapFit, palette: Palette) -> Pixels:
-    """The whole floor of the map plate with the occupancy, placed as the map is; the first row is at the back."""
+def map_floor(picture: OccupancyPicture, fit: MapFit, palette: Palette, been_xy: NDArray[np.floating]) -> Pixels:
+    """The whole floor of the map plate with the occupancy, placed as the map is; the first row is at the back.
+
+    been_xy: (n, 2) m, where the robot has been.
+    """
     size = round(WIDTH * PX_PER_UNIT), round(DEPTH * PX_PER_UNIT)
     corners = np.array([(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)]) * picture.cell_m + picture.origin_xy_m
     placed = fit.to_plate(corners)
-    pixels = np.column_stack([placed[:, 0] + WIDTH / 2, DEPTH / 2 - placed[:, 1]]) * PX_PER_UNIT
+    pixels = _pixels(placed)
     onto = np.column_stack([pixels[1] - pixels[0], pixels[2] - pixels[0], pixels[0]])
     laid = cv2.warpAffine(
         picture.probability, onto, size, flags=cv2.INTER_LINEAR, borderMode=cv2.BORDER_CONSTANT, borderValue=0.5
     )
     ground = np.broadcast_to(np.array(palette.floor, np.uint8), (size[1], size[0], 3))
-    return occupancy_colours(np.asarray(laid, np.float32), ground, palette)
+    covered = _near(_pixels(fit.to_plate(been_xy)), (size[1], size[0]), COVERED_M * fit.scale * PX_PER_UNIT)
+    return occupancy_colours(np.asarray(laid, np.float32), ground, palette, covered)
+
+
+def _pixels(placed: NDArray[np.float64]) -> NDArray[np.float64]:
+    return PX_PER_UNIT * np.column_stack([placed[:, 0] + WIDTH / 2, DEPTH / 2 - placed[:, 1]])
+
+
+def _near(points: NDArray[np.float64], shape: tuple[int, int], within: float) -> NDArray[np.bool_]:
+    """Which pixels have one of the points within so many of them."""
+    column, row = np.rint(points).astype(np.int64).T
+    inside = (column >= 0) & (column < shape[1]) & (row >= 0) & (row < shape[0])
+    far = np.ones(shape, np.uint8)
+    far[row[inside], column[inside]] = 0
+    return np.asarray(cv2.distanceTransform(far, cv2.DIST_L2, cv2.DIST_MASK_5)) <= within
 
 
 def cells_occupied(ground: Pixels, probability: NDArray[np.float32], palette: Palette) -> Pixels:

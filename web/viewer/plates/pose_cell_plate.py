@@ -11,6 +11,7 @@ import viser
 from numpy.typing import NDArray
 
 from web.messages import ExperienceReport, GoalMemoryLayer, Hypothesis, OccupancyLayer, PoseCellLayer, Report, Snap
+from web.messages.robot_status import packet_words
 from web.viewer.camera_views import CELLS_AT, camera_for, seen_by
 from web.viewer.fits import HEIGHT, SIDE, CellFit, broken_where_it_wraps
 from web.viewer.marks.hypotheses import CellHypotheses
@@ -141,7 +142,7 @@ class PoseCellPlate(Plate):
     def _draw_packets(self, layer: PoseCellLayer) -> None:
         packets = [packet for packet in layer.packets[:PACKETS] if packet.mass >= LEAST_SHARE]
         tops = np.array([self._fit.packet(p) for p in packets]).reshape(-1, 3)
-        words = [f"{packet.id}   {packet.mass:.0%}".replace("%", " %") for packet in packets]
+        words = [packet_words(packet.id, packet.mass, len(packets) == 1) for packet in packets]
         height = PILL_M * self.palette.letters
         places = pill_places(tops, np.array([pill_width(w, height) for w in words]), self.origin, height)
         for k, pill in enumerate(self._pills):

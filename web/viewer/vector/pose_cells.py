@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from web.messages import GoalMemoryLayer, PoseCellLayer, Snap
-from web.messages.robot_status import share_words
+from web.messages.robot_status import packet_words, share_words
 from web.viewer.plates.pose_cell_plate import BELIEVES, LEAST_SHARE, NO_ACTIVITY, PACKETS, metres_words
 from web.viewer.primitives.palette import Palette
 from web.viewer.vector.layers import draw_beneath, draw_cell_marks, mark_among_cells
@@ -47,7 +47,7 @@ def draw_pose_cells(subject: Subject) -> str:
         _draw_snap(sheet, layer.last_snap, palette)
         legend.append(("dashes", palette.goal, "from S to F: the last snap"))
     for packet, colour in zip(shown, palette.packets, strict=False):
-        words = f"{packet.id}: {100 * packet.mass:.0f} %"
+        words = packet_words(packet.id, packet.mass, len(shown) == 1)
         sheet.label((packet.x, packet.y), words, palette.on_packet, size=18, up=40, fill=colour)
     for other in subject.others:
         if other.cells is not None:
