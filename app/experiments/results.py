@@ -157,7 +157,7 @@ def _text_of(data: Mapping[str, Any]) -> str:
     def text(value: object) -> str:
         return json.dumps(value, ensure_ascii=False, allow_nan=False)
 
-    runs = []
+    runs: list[str] = []
     for name, run in data["experiments"].items():
         head = ", ".join(f"{text(key)}: {text(value)}" for key, value in run.items() if key != "cells")
         cells = ",\n".join(map(text, run["cells"]))
