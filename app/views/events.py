@@ -179,11 +179,14 @@ class EventWatch:
         self._before = packet
 
     def _watch_closures(self) -> None:
-        """Marks that the robot comes back from new ground to an experience that it made long before."""
+        """Marks that the robot comes back from new ground to an experience that it made long before.
+
+        Who does not look recognises nothing: where it believes to be back by odometry alone, no loop is closed.
+        """
         session, map_, before = self._session, self._session.brain.experience_map, self._here
         self._here = now = map_.here
         self._new += session.estimate.created
-        if session.estimate.created or now == before:
+        if session.estimate.created or now == before or not session.brain.params.local_view.enabled:
             return
         if session.time_s - session.evaluation.births(len(map_))[now, 3] < LONG_AGO_S:
             return

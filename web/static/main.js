@@ -67,7 +67,7 @@ const beside = new BesideStrip(command);
 const watched = new Watched({
   here: () => command({ type: "resume" }),
   again: (wish) => command(wish),
-  more: () => gallery.open(),
+  more: (trial) => gallery.open(trial),
 });
 let ownView = viewer.view; // as the run was left: a lesson turns to its own
 let away = false; // whether a run waits

@@ -5,12 +5,14 @@ from __future__ import annotations
 
 from types import SimpleNamespace
 from typing import NamedTuple
+from unittest.mock import MagicMock
 
+import numpy as np
 import pytest
 
 from app.config import Config
 from app.session import Session
-from app.views.events import EventLog, EventWatch
+from app.views.events import LONG_AGO_S, NEW_GROUND, EventLog, EventWatch
 from app.views.history import History
 from app.views.reasons import SnapCauses, words_of
 from ratslam_core import LocalViewParams, Pose2, PoseCells, Recognition
@@ -195,6 +197,24 @@ def test_a_closed_loop_is_marked_and_says_what_was_linked(carried: Carried) -> N
         assert (start, end) in map_.transitions.row_of
         assert births[start, 3] - births[end, 3] > 0, "back at an older one"
         assert closure.without == tuple(seen.view for seen in closure.views)
+
+
+def test_no_loop_is_closed_in_the_dark() -> None:
+    """By odometry alone the robot believes to be back, and recognises nothing."""
+    session = Session(OFFICE, 3)
+    watch, known = EventWatch(session, EventLog(session)), MagicMock()
+    watch._session = known
+    watch._log, watch.reasons, watch.closures = MagicMock(), MagicMock(), MagicMock()
+    known.time_s, known.estimate.created, known.brain.lost = 2 * LONG_AGO_S, False, False
+    known.brain.experience_map.transitions.row_of = {(9, 2)}
+    known.evaluation.births.return_value = np.zeros((10, 4))
+    marked = list[int]()
+    for sees, here in ((False, 9), (False, 2), (True, 9), (True, 2)):
+        known.brain.params.local_view.enabled, known.brain.experience_map.here = sees, here
+        watch._new = NEW_GROUND
+        watch._watch_closures()
+        marked.append(watch.closures.closed.call_count)
+    assert marked == [0, 0, 0, 1]
 
 
 def test_a_false_look_says_which_view_was_right() -> None:

@@ -109,11 +109,11 @@ export class Gallery {
     this.dialog.addEventListener("click", ({ target }) => target === this.dialog && this.dialog.close());
   }
 
-  async open() {
+  /** @param {Trial | null} [of] shows its experiment, at its setting */
+  async open(of = null) {
     if (this.dialog.open) return;
-    this.wrong("");
-    this.page(null);
     this.dialog.showModal();
+    this.page(null);
     if (!this.cards.length) $("gallery-none").textContent = "Looking what there is …";
     const cards = await this.ask("/api/experiments");
     if (!cards) return;
@@ -127,6 +127,8 @@ export class Gallery {
     );
     $("gallery-cards").replaceChildren(...made);
     this.search();
+    const card = of && this.cards.find(({ name }) => name === of.experiment);
+    if (card) await this.show(card, of.engine, of.levels);
   }
 
   /** Leave the cards that have what is searched for. */
@@ -139,13 +141,13 @@ export class Gallery {
       $("gallery-none").textContent = there.length ? "" : "No experiment says this. Try a figure, a paper or a place.";
   }
 
-  /** @param {Card} card @param {EngineName} engine */
-  async show(card, engine) {
+  /** @param {Card} card @param {EngineName} engine @param {string[]} [levels] */
+  async show(card, engine, levels) {
     const detail = await this.ask(`/api/experiments/${card.name}`);
     if (!detail) return;
     this.from = card.name;
     this.page(card.title);
-    this.grid.show(detail, engine);
+    this.grid.show(detail, engine, levels);
     $("gallery-back").focus();
   }
 
@@ -236,7 +238,7 @@ export function trialWords(trial, time_s) {
 
 /** The note on the stage about the trial that is being watched. */
 export class Watched {
-  /** @param {{ here: () => void, again: (wish: WatchExperiment) => void, more: () => void }} actions */
+  /** @param {{ here: () => void, again: (wish: WatchExperiment) => void, more: (trial: Trial | null) => void }} actions */
   constructor({ here, again, more }) {
     this.box = $("trial");
     /** @type {Trial | null} */
@@ -244,7 +246,7 @@ export class Watched {
     this.run = -1;
     this.away = -1; // the run whose note was put away
     $("trial-here").addEventListener("click", here);
-    $("trial-more").addEventListener("click", more);
+    $("trial-more").addEventListener("click", () => more(this.trial));
     $("trial-again").addEventListener("click", () => this.trial && again(wishOf(this.trial)));
     $("trial-close").addEventListener("click", () => {
       this.away = this.run;

@@ -85,19 +85,19 @@ export class Grid {
     });
   }
 
-  /** @param {ExperimentDetail} detail @param {EngineName} [engine] */
-  show(detail, engine) {
+  /** @param {ExperimentDetail} detail @param {EngineName} [engine] @param {string[]} [levels] */
+  show(detail, engine, levels = detail.card.watch) {
     const { card, results } = detail;
     this.detail = detail;
     this.engine = engine ?? firstEngine(card);
-    this.fixed = card.watch.slice(2);
+    this.fixed = levels.slice(2);
     $("one-asks").textContent = card.asks;
     $("one-found").textContent = `The paper: ${ended(card.found)}`;
     $("one-note").hidden = !results.note;
     $("one-note").textContent = results.note;
     this.showChoices(card);
     this.draw();
-    this.choose(card.watch);
+    this.choose(levels);
   }
 
   /** @param {Card} card */

@@ -367,7 +367,7 @@ function fromAbove(/** @type {Packet[]} */ packets, /** @type {[number, number]}
       svg("circle", { ...at, r, class: "disc" }),
       svg(
         "text",
-        { x: at.cx, y: at.cy, "font-size": width / 11, class: "share" },
+        { x: Math.min(0.82 * width, Math.max(0.18 * width, at.cx)), y: at.cy, "font-size": width / 11, class: "share" },
         `${id}: ${Math.round(100 * mass)} %`,
       ),
     );
