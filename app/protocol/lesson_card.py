@@ -12,7 +12,7 @@ MOST_WORDS = 90
 
 # The card's own words, and the most that it says: a class votes, the prediction was wrong, somebody changed something.
 CARD = {
-    "always": ("Lesson 1", "As in the paper"),
+    "always": ("Lesson 1", "As in the paper", "Your run"),
     "rounds": ("round 1 of 2",),
     "asking": ("9 votes", "The class votes at ADDRESS."),
     "drawing": ("Click the plan, or use the arrow keys and Enter.",),
@@ -20,7 +20,7 @@ CARD = {
     "predict": ("Let it happen",),
     "watching": ("What to watch", "The question"),
     "between rounds": ("Show the next round",),
-    "over": ("Not as predicted", "The question", "Try it", "Once more", "Next lesson"),
+    "over": ("Not as predicted", "The question", "Try it", "Again", "Next"),
     "compared": ("Predicted:", "9 of 9 predicted it", "Moments", "Changed by you."),
     "more": ("More",),
     "inspect": ("Inspect: why it happened",),

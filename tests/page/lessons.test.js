@@ -101,7 +101,7 @@ test("from a lesson the run before is a click away", () =>
     page.press("2"); // the office, by its key
     await choose(page, "packet");
     await until("the lesson turns to its own view", () => page.document.body.dataset.plate === "pose");
-    await page.push("Back to your run", "#lesson");
+    await page.push("Your run", "#lesson");
     await until("the card is away", () => !page.shown("#lesson"));
     const now = await state();
     assert.deepEqual([now.tick, now.running, now.lesson], [123, false, null]);
