@@ -16,6 +16,13 @@ test("a sentence begins with a capital letter and has one full stop; counts and 
   assert.equal(said.megabytes(16_040_000), "16.0 MB");
 });
 
+test("evidence is told in times, which a place becomes likelier", () => {
+  assert.equal(said.likelier(Math.log(1234)), "1,200 times likelier");
+  assert.equal(said.likelier(-Math.log(2.5)), "2.5 times less likely");
+  assert.equal(said.likelier(0.01), "as likely as before");
+  assert.equal(said.likelier(20), "over a million times likelier");
+});
+
 test("a refusal is told without the number that a thing has in a file", () => {
   for (const [told, plain] of [
     ["steps[2]: walls[17] (north wall) would cover the robot", "the north wall would cover the robot"],

@@ -13,6 +13,7 @@ from tests.unit.web.bench import Bench
 from web.messages import Accepted, KnownPlace, RunUntil, SetGoal, SetMode, Snapshot
 from web.viewer.marks.names import HEIGHT, REACH
 from web.viewer.marks.robot import SMALLEST
+from web.viewer.primitives.palette import USUAL
 
 KITCHEN = KnownPlace("kitchen", 2.0, 6.0, (1.5, -0.5))
 ATTIC = KnownPlace("attic", 8.0, 2.0, None)
@@ -54,7 +55,7 @@ def test_names_and_robot_keep_their_size_in_a_world_of_a_hundred_metres(stage: B
     assert NAMED.world is not None
     stage.show(replace(NAMED, world=replace(NAMED.world, bounds=(0.0, 0.0, 100.0, 80.0))), 5)
     stage.settle()
-    assert stage.node("/office/name_0")["render_height"] == small == pytest.approx(HEIGHT)
+    assert stage.node("/office/name_0")["render_height"] == small == pytest.approx(HEIGHT * USUAL)
     assert stage.node("/office/robot/body")["scale"] >= SMALLEST
     stage.show(NAMED, 5)
     stage.settle()

@@ -19,7 +19,7 @@ from web.messages import Snapshot
 from web.themes import Look, Themes
 from web.viewer import Viewer, Viewers
 from web.viewer.plates.plate import MOST_LARGE
-from web.viewer.primitives.palette import LARGE
+from web.viewer.primitives.palette import LARGE, USUAL
 from web.viewer.viser_server import SECRET_HEADER
 
 pytestmark = pytest.mark.slow
@@ -80,8 +80,9 @@ def test_who_presents_is_shown_larger_words_in_a_viewer_of_their_own(both: Both)
 
     usual, larger = heights(both.dark), heights(large)
     assert sum(name.endswith("/words") for name in usual) >= 10
+    subtitle = min(LARGE, MOST_LARGE) / min(USUAL, MOST_LARGE)
     for name, height in usual.items():
-        times = 1.0 if name.endswith("/title") else MOST_LARGE if name.endswith("/subtitle") else LARGE
+        times = 1.0 if name.endswith("/title") else subtitle if name.endswith("/subtitle") else LARGE / USUAL
         assert larger[name] == pytest.approx(times * height), name
 
 

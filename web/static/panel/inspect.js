@@ -2,6 +2,7 @@
 // injected by hand at the chosen column.
 
 import { make, renew, say, svg } from "../ui/elements.js";
+import { likelier } from "../ui/words.js";
 import { nameOf } from "../timeline/events.js";
 import { choice, heading, note, SwitchList, caption, Histogram, Picture, Table } from "./parts.js";
 
@@ -334,8 +335,8 @@ class Why {
 /** What was said of a place, part by part: upwards for it, downwards against it. @param {[number, number][]} said s, nats */
 function bars(said) {
   const [wide, high] = [100, 34];
-  const longest = Math.max(...said.map(([, nats]) => Math.abs(nats)));
-  const most = Math.max(1, longest); // the scale: little said is drawn small
+  const longest = said.map(([, nats]) => nats).reduce((a, b) => (Math.abs(b) > Math.abs(a) ? b : a));
+  const most = Math.max(1, Math.abs(longest)); // the scale: little said is drawn small
   const each = wide / said.length;
   const drawn = said.map(([, nats], k) => {
     const tall = (Math.abs(nats) / most) * (high / 2 - 5);
@@ -344,7 +345,7 @@ function bars(said) {
   });
   const sum = said.reduce((all, [, nats]) => all + nats, 0);
   const [first, last] = [said[0][0], said[said.length - 1][0]];
-  const words = `${said.length} parts from ${first} to ${last} s, ${sum.toFixed(1)} nats in all`;
+  const words = `${likelier(sum)} in all, from ${first} to ${last} s; the longest bar: ${likelier(longest)}`;
   return svg(
     "svg",
     { viewBox: `0 0 ${wide} ${high}`, role: "img", class: "spoken", "aria-label": words },
@@ -352,7 +353,7 @@ function bars(said) {
     ...drawn,
     svg("text", { x: 0, y: high - 0.6 }, `${first} s`),
     svg("text", { x: wide, y: high - 0.6, "text-anchor": "end" }, `${last} s`),
-    svg("text", { x: 0, y: 3.6 }, `longest bar ${longest.toFixed(1)} nats; ${sum.toFixed(1)} in all`),
+    svg("text", { x: 0, y: 3.6 }, `${likelier(sum)} in all; the longest bar: ${likelier(longest)}`),
   );
 }
 

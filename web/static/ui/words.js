@@ -23,6 +23,14 @@ const PAPERS = /** @type {Record<string, string>} */ ({
 export const sourceWords = (source) =>
   source.replace(/(^|[,;] )([A-D])(?= |$)/g, (_, before, letter) => before + PAPERS[letter]);
 
+/** What evidence makes of a place, in words. @param {number} nats log likelihood ratio */
+export function likelier(nats) {
+  const times = Math.exp(Math.abs(nats));
+  if (times < 1.05) return "as likely as before";
+  const words = times > 1e6 ? "over a million" : Number(times.toPrecision(2)).toLocaleString("en");
+  return `${words} times ${nats > 0 ? "likelier" : "less likely"}`;
+}
+
 /** 1:30, 1:02:30. @param {number} seconds */
 export function clock(seconds) {
   const whole = Math.floor(seconds);

@@ -14,7 +14,7 @@ from web.viewer.primitives import images, meshes
 from web.viewer.primitives.labels import TAG, LabelRoom, Pill, Sign, add_mesh
 from web.viewer.primitives.palette import Palette, mix
 
-HEIGHT, Z = 0.4, 0.72  # plate units, in worlds of any size, of usual letters; above the walls
+HEIGHT, Z = 0.4, 0.72  # plate units, in worlds of any size, where letters are 1; above the walls
 MOST = 40
 REACH = 5.4  # plate units to each side: no name leaves the plate
 

@@ -79,7 +79,7 @@ class Pill:
         self, scene: viser.SceneApi, name: str, height: float, fill: Rgb, palette: Palette, rim: Rgb | None = None,
         room: LabelRoom | None = None, rank: int = 0,
     ) -> None:  # fmt: skip
-        """height: with usual letters; rank: which label of the room gives way to which."""
+        """height: where letters are 1; rank: which label of the room gives way to which."""
         height *= palette.letters
         self._height, self._room, self._rank = height, room, rank
         self._words: str = ""

@@ -20,7 +20,7 @@ WHITE: Rgb = (255, 255, 255)
 KEY_AT, RIM_AT = (-8.0, -14.0, 20.0), (12.0, 10.0, 6.0)
 RIM_LIGHT, RIM_TINT = 1.2, (170, 200, 255)
 UP = (0.0, 0.0, 1.0)
-LARGE = 1.4  # letters for the last row, against the usual ones
+USUAL, LARGE = 1.25, 1.5  # letters for a laptop, where a plate is 400 pixels wide, and for the last row
 EXPOSURE = 1 / 0.6
 GLOSS = 0.0066  # the share of the light that any mesh reflects, whatever its paint (measured)
 BRIGHTEST = 0.94  # of what a screen can show; white itself would need infinite light
@@ -136,7 +136,7 @@ class Palette:
     ambient: float
     key: float
     shadow: float
-    letters: float = 1.0
+    letters: float = USUAL
 
     def times(self, seconds: NDArray[np.float32], longest_s: float) -> NDArray[np.uint8]:
         """(n, 3) colours: bright at 0 s, deep at `longest_s`, `unknown` where no way is known."""
