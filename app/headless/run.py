@@ -52,7 +52,12 @@ def _rest(count: int, within_s: float) -> float:
     return min(REST_S, within_s / (count + 2))
 
 
-GOAL_TIMEOUT_S, NEAR_ENOUGH_M = 180.0, 1.0
+NEAR_ENOUGH_M = 1.0
+GOAL_SPEED, GOAL_PATIENCE_S = (
+    0.15,
+    60.0,
+)  # a goal is given up after the shortest way at this speed (m/s), and so much more
+GOAL_MOST_M = 300.0  # way that counts: where there is none, it is endless
 
 
 def run_headless(
@@ -104,7 +109,9 @@ def _ticks(course: Course, minutes: float, kidnap_at_s: Sequence[float], goals: 
         yield what
     for number, goal in enumerate(spread_goals(session, goals), start=1):
         place = session.evaluation.made_at(goal, session.brain.experience_map)
-        yield from course.go(f"goal {number} of {goals}", goal, place, GOAL_TIMEOUT_S, NEAR_ENOUGH_M)
+        way_m = min(session.simulator.free_space.shortest_m(course.here, place), GOAL_MOST_M)
+        limit_s = round(way_m / GOAL_SPEED + GOAL_PATIENCE_S, 1)
+        yield from course.go(f"goal {number} of {goals}", goal, place, limit_s, NEAR_ENOUGH_M)
 
 
 def _visit_row(visit: Visited) -> dict[str, Any]:

@@ -31,6 +31,7 @@ NARROW_M = 0.15  # margin beyond the clearance in which an echo costs, less the 
 NARROW_COST = 0.15  # m, of one exactly at the clearance
 ESCAPE_M2 = 1e-4  # on the way out, the squared distance of an echo that is too close may shrink by this much
 GAP_RAD, GAP_STEPS = 1.4, 8  # how far beside the next point a gap is looked for, in so many steps to each side
+SQUEEZE = 0.85  # of the clearance is kept where the robot does not get out: echoes are some centimetres off
 GAP_COST = 0.3  # m/rad: free way that a turn from the point's direction is worth
 
 _Array = NDArray[np.float64]  # (n, 2): points in the robot's frame, m
@@ -44,7 +45,7 @@ class Choice(NamedTuple):
     clearance: float
 
 
-@kind("local movement/2")
+@kind("local movement/3")
 class LocalMovement:
     """Remembers echoes around the robot and chooses (speed m/s, yaw rate rad/s)."""
 
@@ -59,7 +60,8 @@ class LocalMovement:
         self._scans = max(1, round(echo_s / BEAT_S))
         self._echoes = np.full((self._scans * len(self._angles), 2), np.inf)  # in the robot's frame now
         self._beats, self._beat = Beats(), -1
-        self._choice: tuple[PilotParams, Choice] | None = None
+        self.squeezes = False  # it passes closer to what is around it
+        self._choice: tuple[PilotParams, bool, Choice] | None = None
         self._asked: tuple[float, float, Choice] | None = None  # since it last sensed, for people who look
 
     def forget(self) -> None:
@@ -94,7 +96,7 @@ class LocalMovement:
 
     def free_way(self, bearing: float, p: PilotParams) -> float:
         """How far (m) the robot can drive straight in this direction (rad) before it is too close to an echo."""
-        return _free_way(self._echoes, bearing, p.clearance, ECHO_RANGE_M)
+        return _free_way(self._echoes, bearing, self._chosen_by(p).clearance, ECHO_RANGE_M)
 
     def gap_towards(self, x: float, y: float, p: PilotParams) -> tuple[float, float]:
         """[ours] (x, y), or if echoes are in the way, a point in the freest direction beside it. Metres, robot's frame.
@@ -105,14 +107,16 @@ class LocalMovement:
         bearing = math.atan2(y, x)
         if want <= 0 or self.free_way(bearing, p) >= want:
             return x, y
-        better = _freest(self._echoes, bearing, want, p.clearance, GAP_RAD / GAP_STEPS, GAP_STEPS, GAP_COST)
+        clearance = self._chosen_by(p).clearance
+        better = _freest(self._echoes, bearing, want, clearance, GAP_RAD / GAP_STEPS, GAP_STEPS, GAP_COST)
         return want * math.cos(better), want * math.sin(better)
 
     def _chosen_by(self, p: PilotParams) -> Choice:
         """The same object for the same parameters, since it is needed in every tick."""
-        if self._choice is None or self._choice[0] is not p:
-            self._choice = p, Choice(p.cruise_speed, p.turn_rate, p.clearance)
-        return self._choice[1]
+        if self._choice is None or self._choice[:2] != (p, self.squeezes):
+            clearance = p.clearance * (SQUEEZE if self.squeezes else 1.0)
+            self._choice = p, self.squeezes, Choice(p.cruise_speed, p.turn_rate, clearance)
+        return self._choice[2]
 
 
 @njit(cache=True, nogil=True)

@@ -17,6 +17,7 @@ from app.pilot.local_movement import Candidates, LocalMovement, candidates
 from app.pilot.params import PilotParams
 from app.pilot.route_following import Progress, RouteFollower
 from app.pilot.seeking import Seeker
+from app.pilot.stay import Stay
 from disk import kind
 from ratslam_core import ExperienceMap, Odometry
 from web.messages import GoalState
@@ -175,6 +176,7 @@ class Pilot:
         if follower is not None:
             follower.move(odometry, self.behaviour is not Behaviour.FREEING_ITSELF)
         drive = self._freeing.step(bumped, odometry, self._asked[1], self.params)
+        self._local.squeezes = self._freeing.squeezes
         if drive is not None:
             self.behaviour = Behaviour.FREEING_ITSELF
             if self._freeing.has_begun:
@@ -250,6 +252,7 @@ class Pilot:
 
 BUMPED_S = 1.0  # without progress for this long, a robot that has bumped into something frees itself
 SOMEWHERE_M, TURNED_RAD = 0.4, 1.5  # progress is to come this far, by odometry, or to turn this far ...
+SQUEEZE_S = 6.0  # who stays in one place for so long passes closer to what is around
 MOST_TURNS = 2  # ... but turns count no more often than this in one place
 GRIP_YAW_RATE = 0.2  # rad/s; turns faster than this are used to measure how slow the floor is
 LEAST_GRIP = 0.2  # on the slowest floor, time without progress runs at this share
@@ -259,7 +262,7 @@ FREE_TURN_S = 1.5  # ... and how long it turns then ...
 FREE_TURN_SHARE = 0.5  # ... at this share of the turn rate or more, to the left or right
 
 
-@kind("freeing/1")
+@kind("freeing/2")
 class Freeing:
     """[ours] Getting free: the robot backs off and turns when it has bumped into something or makes no progress.
 
@@ -271,6 +274,7 @@ class Freeing:
         self._rng = rng
         self._place = np.array([0.0, 0.0, 0.0])  # x, y, heading by odometry, since it last got ahead
         self._still_s = 0.0  # time without progress
+        self._stay = Stay()
         self._looked_at, self._turns = 0.0, 0  # heading at the last turn that counted; turns counted since it got ahead
         self._grip = 1.0  # which share of the yaw rate asked for the floor lets through
         self._left_s = 0.0  # what is left of backing off and turning
@@ -280,11 +284,19 @@ class Freeing:
     def at_rest(self) -> None:
         """The robot stands on purpose, so it is not stuck."""
         self._still_s = 0.0
+        self._stay.leave()
+
+    @property
+    def squeezes(self) -> bool:
+        """Whether it has been in one place for so long that it may pass closer to what is around it."""
+        return self._stay.seconds > SQUEEZE_S
 
     def step(self, bumped: bool, odometry: Odometry, asked: float, p: PilotParams) -> tuple[float, float] | None:
         """The drive while the robot frees itself, else None. asked: yaw rate (rad/s) of the last drive."""
         self.has_begun = False
         self._move_on(odometry, asked)
+        if bumped:
+            self._stay.leave()  # too close
         if self._left_s > 0:
             self._left_s -= odometry.dt
             self._still_s = 0.0
@@ -302,6 +314,7 @@ class Freeing:
         heading += odometry.yaw_rate * odometry.dt
         step = odometry.speed * odometry.dt
         self._place[:] = x + step * math.cos(heading), y + step * math.sin(heading), heading
+        self._stay.move(odometry)
         if abs(asked) > GRIP_YAW_RATE and odometry.yaw_rate != 0:  # wheels that do not turn are stuck, not slow
             share = min(1.0, max(LEAST_GRIP, odometry.yaw_rate / asked))
             self._grip += min(1.0, odometry.dt / GRIP_S) * (share - self._grip)

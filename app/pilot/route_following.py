@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from app.pilot.bars import WIDEST_BAR_M, Bars, bar_ahead, crosses
 from app.pilot.local_movement import LocalMovement
 from app.pilot.params import PilotParams
+from app.pilot.stay import Stay
 from disk import kind
 from ratslam_core import ExperienceMap, Odometry, Pose2, Route, wrap_angles
 from web.messages import GoalState
@@ -76,7 +77,7 @@ NEAR_DOUBT_S = 15.0  # ... and for each bar and failure: there the map may show 
 NEAR_BLIND_M = 0.2  # ... and the sonars must find it free but for so much
 HEADWAY_M, HEADWAY_RAD = 0.1, 0.3  # headway is to come nearer, by odometry, or to turn to the next point, by this
 TRIAL_S = 2.0  # no headway for this long is a failed trial of the way ahead (D 3.4)
-PLACE_M, NO_HEADWAY_S = 1.0, 25.0  # a robot that stays within this for this long ...
+NO_HEADWAY_S = 25.0  # a robot that stays in one place for this long ...
 LOOK_AROUND_S = 15.0  # ... looks around for this long, since what the map takes for a way may be a wall
 
 _Array = NDArray[np.float64]
@@ -350,7 +351,7 @@ def _along(
     return here, to
 
 
-@kind("headway/1")
+@kind("headway/2")
 class Headway:
     """Whether the robot gets on along its route, judged by its own odometry.
 
@@ -363,8 +364,7 @@ class Headway:
 
     def __init__(self) -> None:
         self._aim: tuple[float, float] | None = None  # the point headed for, m, robot's frame
-        self._off_x = self._off_y = self._heading = 0.0  # by odometry, since it last left a place
-        self._stays_s = 0.0  # time since then
+        self._stay = Stay()
         self.begin()
 
     def begin(self) -> None:
@@ -375,14 +375,14 @@ class Headway:
 
     def leave(self) -> None:
         """It goes elsewhere for a while: count its stay from now."""
-        self._stays_s = self._off_x = self._off_y = 0.0
+        self._stay.leave()
         self.begin()
 
     def blocked(self) -> bool:
         return self._still_s > TRIAL_S
 
     def astray(self) -> bool:
-        return self._stays_s > NO_HEADWAY_S
+        return self._stay.seconds > NO_HEADWAY_S
 
     def head_for(self, aim: tuple[float, float] | None) -> None:
         """aim: the next point (m, robot's frame), None for no route."""
@@ -391,13 +391,7 @@ class Headway:
     def move(self, odometry: Odometry, trying: bool) -> None:
         """The robot moved; called in every tick. trying: whether it drove towards the aim, and did not back out."""
         step, turn = odometry.speed * odometry.dt, odometry.yaw_rate * odometry.dt
-        middle = self._heading + turn / 2
-        self._heading += turn
-        self._off_x += step * math.cos(middle)
-        self._off_y += step * math.sin(middle)
-        self._stays_s += odometry.dt
-        if math.hypot(self._off_x, self._off_y) > PLACE_M:
-            self._stays_s = self._off_x = self._off_y = 0.0
+        self._stay.move(odometry)
         if self._aim is None:
             return
         x, y = self._aim

@@ -8,11 +8,11 @@ from dataclasses import replace
 import pytest
 
 from ratslam_core import Odometry
-from sim2d import Drive, Simulator
+from sim2d import Drive, SimParams, Simulator
 from sim2d.world.world import SlowZone
 
 from .pilots import DT, FAR, STILL, Run, a_pilot
-from .worlds import EXACT, HandMadeMap, room
+from .worlds import EXACT, HandMadeMap, chain, room
 
 
 @pytest.mark.parametrize("seed", range(5))
@@ -40,6 +40,24 @@ def test_a_slow_floor_is_no_reason_to_back_off(seed: int) -> None:
     run.run(240)
     assert run.doing["freeing itself"] < 0.1 * sum(run.doing.values())
     assert len({(int(x), int(y)) for x, y in run.track}) > 5
+
+
+@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("gap_m", [0.52, 0.56])
+@pytest.mark.slow
+def test_it_gets_out_of_a_pocket_hardly_wider_than_itself(gap_m: float, seed: int) -> None:
+    """As in a real plan, where it stood for the rest of the hour: 0.44 m wide, it keeps 0.24 m clear of echoes that are
+    centimetres off."""
+    low, high = 2.0 - gap_m / 2, 2.0 + gap_m / 2
+    pocket = room(
+        (2.9, 0.0, 2.9, low), (2.9, high, 2.9, 4.0), (2.9, 1.4, 4.0, 1.4), (2.9, 2.6, 4.0, 2.6),
+        start=(3.4, 2.1, 0.3 * seed),
+    )  # fmt: skip
+    way = HandMadeMap(*chain((3.4, 2.0), (2.9, 2.0), (1.5, 2.0), (1.0, 1.0)))
+    run = Run(Simulator(pocket, SimParams(), seed), a_pilot(seed), way)
+    run.pilot.set_goal(len(way) - 1)
+    run.run(120)
+    assert run.truth[0] < 2.5
 
 
 NOWHERE = HandMadeMap([(0.0, 0.0)], [])

@@ -6,7 +6,8 @@ import math
 
 import pytest
 
-from app.pilot.route_following import NO_HEADWAY_S, PLACE_M, Headway
+from app.pilot.route_following import NO_HEADWAY_S, Headway
+from app.pilot.stay import PLACE_M
 from ratslam_core import Odometry
 
 from .pilots import DT

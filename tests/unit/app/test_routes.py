@@ -138,7 +138,7 @@ def two_ways() -> tuple[World, list[tuple[float, float]], list[tuple[int, int]]]
     return world, places + more, links
 
 
-@pytest.mark.parametrize("seed", [0, 1, 3])  # with 2, it comes round by looking around, before a link is deleted
+@pytest.mark.parametrize("seed", [1, 3, 6])  # with 0 and 2, it comes round by looking around, before a link is deleted
 def test_a_door_that_was_shut_is_given_up(seed: int) -> None:
     """As in ACRA 2006: all ways through the door fail together, not one after the other, and the robot goes round."""
     world, places, links = two_ways()

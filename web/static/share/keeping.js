@@ -32,6 +32,8 @@ class StageFilm {
     this.timeline = timeline;
     /** @type {{ from: number, to: number, last: number, recorder: MediaRecorder, parts: Blob[], whole: boolean } | null} */
     this.film = null;
+    /** @type {HTMLElement | null} */
+    this.refused = null; // why the last film was not made
     /** @type {State | null} */
     this.state = null;
     $("film-cancel").addEventListener("click", () => this.end(false));
@@ -70,9 +72,10 @@ class StageFilm {
   async begin() {
     const loop = this.timeline.time?.loop ?? this.lately();
     const type = TYPES.find((name) => window.MediaRecorder?.isTypeSupported(name));
-    if (this.film) return toast("A film is being made.", { bad: true });
-    if (!loop) return toast("Mark a stretch first, with a and b above the timeline; the film shows it.", { bad: true });
-    if (!this.canvas || !type) return toast("This browser cannot make films of the stage.", { bad: true });
+    this.refused?.remove(); // the film is shown in its place, and what it asked for may be there by now
+    if (this.film) return this.refuse("A film is being made.");
+    if (!loop) return this.refuse("Mark a stretch first, with a and b above the timeline; the film shows it.");
+    if (!this.canvas || !type) return this.refuse("This browser cannot make films of the stage.");
     const [from, to] = loop;
     const sought = await this.link.ask({ type: "seek", time_s: from });
     if (!sought.accepted) return;
@@ -84,6 +87,11 @@ class StageFilm {
     this.show();
     recorder.start(1000);
     await this.link.ask({ type: "resume" });
+  }
+
+  /** @param {string} words */
+  refuse(words) {
+    this.refused = toast(words, { bad: true });
   }
 
   /** The page has been told of a moment. @param {State} state @param {PageFields} page */
