@@ -252,7 +252,7 @@ class Pilot:
 
 BUMPED_S = 1.0  # without progress for this long, a robot that has bumped into something frees itself
 SOMEWHERE_M, TURNED_RAD = 0.4, 1.5  # progress is to come this far, by odometry, or to turn this far ...
-SQUEEZE_S = 6.0  # who stays in one place for so long passes closer to what is around
+SQUEEZE_S = 15.0  # who stays in one place for so long passes closer to what is around
 MOST_TURNS = 2  # ... but turns count no more often than this in one place
 GRIP_YAW_RATE = 0.2  # rad/s; turns faster than this are used to measure how slow the floor is
 LEAST_GRIP = 0.2  # on the slowest floor, time without progress runs at this share
@@ -295,8 +295,6 @@ class Freeing:
         """The drive while the robot frees itself, else None. asked: yaw rate (rad/s) of the last drive."""
         self.has_begun = False
         self._move_on(odometry, asked)
-        if bumped:
-            self._stay.leave()  # too close
         if self._left_s > 0:
             self._left_s -= odometry.dt
             self._still_s = 0.0
