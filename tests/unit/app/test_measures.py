@@ -93,7 +93,7 @@ def test_of_a_visit_the_way_taken_the_arbitration_and_the_routes_of_the_goal_mem
         Tag(do="tag", places=["north-west corner", "north-east corner"]),
         Drive(do="drive", path=[*LAPS, *LAPS, "north-east corner"]),
         Visit(do="visit", places=["north-east corner", "north-west corner"], timeout_s=120),
-        seed=3,
+        seed=1,
     )
     path = course.session.evaluation.path[round(course.visits[-1].began_s * 10) :, 1]
     middle = sum(course.session.world.bounds[1::2]) / 2
@@ -119,7 +119,7 @@ def test_false_and_true_snaps_are_all_snaps() -> None:
     eager: dict[str, Any] = {"local_view__learning_rate": 0.15, "local_view__saturation": 0.02, "local_view__rest": 0.0}
     explore, carried = Explore(do="explore", minutes=3), Kidnap(do="kidnap", least_m=3)
     scores, course = measured(
-        ["false_snaps"], explore, carried, explore, world="office", kidnap__enabled=False, **eager
+        ["false_snaps"], explore, carried, explore, world="office", seed=2, kidnap__enabled=False, **eager
     )
     assert 1 <= scores["false_snaps"] + scores["true_snaps"] <= course.session.brain.relocalisations
 
