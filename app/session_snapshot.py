@@ -31,6 +31,7 @@ from app.pilot.known_ground import KnownGround
 from app.pilot.opening import Opening
 from app.pilot.route_following import RouteFollower
 from app.pilot.seeking import Seeker
+from app.pilot.stay import Stay
 from app.session import LONGEST_NAME, MOST_TAGS, Session
 from app.sources.simulated import Simulated
 from disk import State, copy_state, decode, encode
@@ -202,6 +203,7 @@ def pilot(pilot: Pilot, experiences: int) -> None:
     true(pilot._behaviour in Behaviour.__members__, f"the pilot cannot be {pilot._behaviour!r}")
     place = array("the pilot's place", pilot._freeing._place, np.float64, (3,))
     within("the pilot's place", place, -MOST_TURNED, MOST_TURNED)
+    _stay(pilot._freeing._stay)
     local = pilot._local
     true(np.array_equal(local._angles, SONAR_ANGLES_RAD), "the pilot must know the robot's sonars")
     scans = whole("scans that are remembered", local._scans, 1, 10**6)
@@ -229,9 +231,15 @@ def _explorer(explorer: Explorer) -> None:
         number("what is left of the turn", explorer._turn.left, -MOST_TURNED, MOST_TURNED)
 
 
+def _stay(stay: Stay) -> None:
+    for value in vars(stay).values():
+        number("the pilot's stay", value, -MOST_TURNED, MOST_TURNED)
+
+
 def _follower(follower: RouteFollower, experiences: int) -> None:
     true(isinstance(follower, RouteFollower), "who follows a route must be a RouteFollower")
     same_kind("route follower", follower, RouteFollower(0))
+    _stay(follower._headway._stay)
     true(isinstance(follower.goals, list) and len(follower.goals) > 0, "a route must lead to a goal")
     for goal in follower.goals:
         whole("the goal", goal, 0, experiences - 1)

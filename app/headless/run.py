@@ -53,11 +53,8 @@ def _rest(count: int, within_s: float) -> float:
 
 
 NEAR_ENOUGH_M = 1.0
-GOAL_SPEED, GOAL_PATIENCE_S = (
-    0.15,
-    60.0,
-)  # a goal is given up after the shortest way at this speed (m/s), and so much more
-GOAL_MOST_M = 300.0  # way that counts: where there is none, it is endless
+GOAL_SPEED, GOAL_PATIENCE_S = 0.15, 60.0  # it is given up after the shortest way at this speed (m/s), and so much more
+GOAL_MOST_M = 300.0  # of that way: where there is none, it is endless
 
 
 def run_headless(

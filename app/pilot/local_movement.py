@@ -31,8 +31,8 @@ NARROW_M = 0.15  # margin beyond the clearance in which an echo costs, less the 
 NARROW_COST = 0.15  # m, of one exactly at the clearance
 ESCAPE_M2 = 1e-4  # on the way out, the squared distance of an echo that is too close may shrink by this much
 GAP_RAD, GAP_STEPS = 1.4, 8  # how far beside the next point a gap is looked for, in so many steps to each side
-SQUEEZE = 0.85  # of the clearance is kept where the robot does not get out: echoes are some centimetres off
 GAP_COST = 0.3  # m/rad: free way that a turn from the point's direction is worth
+SQUEEZE = 0.85  # of the clearance is kept where the robot does not get out: echoes are some centimetres off
 
 _Array = NDArray[np.float64]  # (n, 2): points in the robot's frame, m
 

@@ -252,7 +252,6 @@ class Pilot:
 
 BUMPED_S = 1.0  # without progress for this long, a robot that has bumped into something frees itself
 SOMEWHERE_M, TURNED_RAD = 0.4, 1.5  # progress is to come this far, by odometry, or to turn this far ...
-SQUEEZE_S = 15.0  # who stays in one place for so long passes closer to what is around
 MOST_TURNS = 2  # ... but turns count no more often than this in one place
 GRIP_YAW_RATE = 0.2  # rad/s; turns faster than this are used to measure how slow the floor is
 LEAST_GRIP = 0.2  # on the slowest floor, time without progress runs at this share
@@ -260,6 +259,7 @@ GRIP_S = 2.0  # time constant of measuring the floor
 BACK_OFF_S, BACK_OFF_SPEED = 1.0, 0.2  # how long, and at how many m/s, the robot backs off ...
 FREE_TURN_S = 1.5  # ... and how long it turns then ...
 FREE_TURN_SHARE = 0.5  # ... at this share of the turn rate or more, to the left or right
+SQUEEZE_S = 15.0  # who stays in one place for so long passes closer to what is around
 
 
 @kind("freeing/2")
@@ -267,7 +267,8 @@ class Freeing:
     """[ours] Getting free: the robot backs off and turns when it has bumped into something or makes no progress.
 
     Turning counts as progress, but only a few times in one place. On a slow floor the time without progress runs slower.
-    test_freeing.py::{test_a_cornered_robot_frees_itself, test_a_slow_floor_is_no_reason_to_back_off}.
+    test_freeing.py::{test_a_cornered_robot_frees_itself, test_a_slow_floor_is_no_reason_to_back_off,
+    test_it_gets_out_of_a_pocket_hardly_wider_than_itself}.
     """
 
     def __init__(self, rng: np.random.Generator) -> None:

@@ -16,7 +16,8 @@ class Stay:
 
     def __init__(self) -> None:
         self.seconds = 0.0
-        self._x = self._y = self._heading = 0.0  # m, rad, from that place
+        self._x = self._y = 0.0  # m, from that place
+        self._heading = 0.0  # rad
 
     def leave(self) -> None:
         """It is counted from now."""

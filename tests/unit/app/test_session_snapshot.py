@@ -212,6 +212,7 @@ BREAKS: list[tuple[str, object, str]] = [
     ("simulator._frame.ranges_m", np.zeros(7, np.float32), r"the sonars must have shape \(8\), got \(7,\)"),
     ("simulator._sensors._image_rng", 3, "must be a Generator, got a int"),
     ("pilot._local._echoes", np.zeros((3, 2)), "echoes must have shape"),
+    ("pilot._freeing._stay._heading", float("inf"), "the pilot's stay must be a number from"),
     ("pilot.mode", "asleep", "the mode must be one of explore, manual, goal, got 'asleep'"),
     ("pilot._explorer._rng", np.random.default_rng(3), "must draw from one generator"),
     ("evaluation._count", 10**6, "the path's length must be a whole number"),
