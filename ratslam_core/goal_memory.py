@@ -18,12 +18,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
 from disk import kind
 from ratslam_core.params import GoalMemoryParams
 from ratslam_core.pose_cells.activity_kernels import Cells, Shape, Values, X, Y, offset
-from ratslam_core.types import Packet, require_finite
+from ratslam_core.types import Floats, Ints, Ints32, Packet, Singles, require_finite
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_matrix
@@ -70,13 +69,13 @@ class GoalMemory:
         return self._keys.nbytes + self._times.nbytes + self._place.nbytes
 
     @property
-    def links(self) -> tuple[NDArray[np.int64], NDArray[np.float32]]:
+    def links(self) -> tuple[Ints, Singles]:
         """Pairs of cells y * n_x + x, shape (m, 2), the smaller first, and tau in s, shape (m,). In no order; copies."""
         used = self._keys != FREE
         keys = self._keys[used]
         return np.stack([keys // self._place.size, keys % self._place.size], axis=1), self._times[used]
 
-    def times_to(self, x: int, y: int) -> NDArray[np.float64]:
+    def times_to(self, x: int, y: int) -> Floats:
         """The temporal map T: s from every cell to this one, shape (n_y, n_x); 0 there, inf where no way is known.
 
         T_i <- min(T_i, min_j (T_j + tau_ji)) until nothing decreases, IROS 2005 eq. 6. That ends at the shortest times,
@@ -96,7 +95,7 @@ class GoalMemory:
         times = np.asarray(dijkstra(self._graph, directed=False, indices=int(y) * n_x + int(x)))
         return times.reshape(n_y, n_x)
 
-    def direction(self, T: NDArray[np.float64], packet: Packet) -> float | None:
+    def direction(self, T: Floats, packet: Packet) -> float | None:
         """Where to go: rad in the pose cells' frame, towards the lowest T in reach of the packet. IROS 2005 section III.B.
 
         T: from `times_to`. None within one cell of the goal, and when no way is known from here.
@@ -120,7 +119,7 @@ class GoalMemory:
                 return math.atan2(offset(best // n_x, y, n_y), offset(best % n_x, x, n_x))
         return None
 
-    def learn(self, cells: NDArray[np.int32], activity: NDArray[np.float32], time_s: float) -> None:
+    def learn(self, cells: Ints32, activity: Singles, time_s: float) -> None:
         """Link what is active now with what was active in the iteration before. IROS 2005 eqs. 1-5.
 
         cells, activity: the active set of the pose cells (`PoseCells.active`); time_s: the time, increasing. A clock
@@ -155,7 +154,7 @@ class GoalMemory:
         """The next iteration is linked to none before it: the packet was not driven to where it is."""
         self._last = None
 
-    def _project(self, cells: NDArray[np.int32], activity: NDArray[np.float32], time_s: float) -> _Iteration:
+    def _project(self, cells: Ints32, activity: Singles, time_s: float) -> _Iteration:
         if cells.ndim != 2 or cells.shape[1] != 4 or activity.shape != cells.shape[:1]:
             raise ValueError(f"cells must have shape (n, 4) and activity (n,), got {cells.shape} and {activity.shape}")
         n_y, n_x = self.shape[1:]
@@ -185,8 +184,8 @@ class GoalMemory:
 class _Iteration:
     """Which cells of the plane were active, and when."""
 
-    flats: NDArray[np.int64]  # cells of the plane, y * n_x + x
-    activity: NDArray[np.float64]  # G of each
+    flats: Ints  # cells of the plane, y * n_x + x
+    activity: Floats  # G of each
     x: float  # centre of the packet, cells
     y: float
     time_s: float
@@ -194,9 +193,7 @@ class _Iteration:
 
 
 @njit(cache=True, nogil=True)
-def _projected(
-    cells: Cells, activity: Values, shape: Shape, share: float, place: NDArray[np.int32]
-) -> tuple[NDArray[np.int64], NDArray[np.float64], int]:
+def _projected(cells: Cells, activity: Values, shape: Shape, share: float, place: Ints32) -> tuple[Ints, Floats, int]:
     """G_xy = sum over theta of P, where it is above share * G_max. IROS 2005 eq. 1.
 
     Returns the cells of the plane, their G, and the first row that lies outside of it (-1: none). place: scratch, all 0.
@@ -234,7 +231,7 @@ def _projected(
 
 
 @njit(cache=True, nogil=True)
-def centre(flats: NDArray[np.int64], values: NDArray[np.float64], shape: Shape, near: int) -> tuple[float, float]:
+def centre(flats: Ints, values: Floats, shape: Shape, near: int) -> tuple[float, float]:
     """Centre of the activity within `near` cells of the strongest, in cells."""
     n_y, n_x = shape[1], shape[2]
     best = np.argmax(values)
@@ -251,12 +248,12 @@ def centre(flats: NDArray[np.int64], values: NDArray[np.float64], shape: Shape, 
 
 @njit(cache=True, nogil=True)
 def _learn(
-    flats_i: NDArray[np.int64],
-    G_i: NDArray[np.float64],
-    flats_j: NDArray[np.int64],
-    G_j: NDArray[np.float64],
-    keys: NDArray[np.int64],
-    times: NDArray[np.float32],
+    flats_i: Ints,
+    G_i: Floats,
+    flats_j: Ints,
+    G_j: Floats,
+    keys: Ints,
+    times: Singles,
     used: int,
     shape: Shape,
     elapsed: float,
@@ -296,9 +293,7 @@ def _learn(
 
 
 @njit(cache=True, nogil=True)
-def _move(
-    keys: NDArray[np.int64], times: NDArray[np.float32], new_keys: NDArray[np.int64], new_times: NDArray[np.float32]
-) -> None:
+def _move(keys: Ints, times: Singles, new_keys: Ints, new_times: Singles) -> None:
     """Copy all links into a larger table."""
     for k in range(keys.size):
         if keys[k] != FREE:
@@ -308,7 +303,7 @@ def _move(
 
 
 @njit(cache=True, nogil=True)
-def lowest(T: NDArray[np.float64], x: int, y: int, reach: int, keys: NDArray[np.int64]) -> int:
+def lowest(T: Floats, x: int, y: int, reach: int, keys: Ints) -> int:
     """The cell with the lowest T below that of (x, y), among those within `reach` that it is linked to; -1 when there is none.
 
     Where nothing has been learnt yet (T is inf), any known cell in reach will do.
@@ -331,7 +326,7 @@ def lowest(T: NDArray[np.float64], x: int, y: int, reach: int, keys: NDArray[np.
 
 
 @njit(cache=True, nogil=True)
-def _find(key: int, keys: NDArray[np.int64]) -> int:
+def _find(key: int, keys: Ints) -> int:
     """Where a key is in the table, or the free place where it belongs. The table is never full."""
     mask = keys.size - 1
     mixed = key * 5_872_781
@@ -342,7 +337,7 @@ def _find(key: int, keys: NDArray[np.int64]) -> int:
 
 
 @njit(cache=True, nogil=True)
-def misplaced(keys: NDArray[np.int64]) -> int:
+def misplaced(keys: Ints) -> int:
     """The first place whose key would be looked for elsewhere, -1 when there is none."""
     for at in range(keys.size):
         if keys[at] != FREE and _find(keys[at], keys) != at:
@@ -350,7 +345,7 @@ def misplaced(keys: NDArray[np.int64]) -> int:
     return -1
 
 
-def lead_s(memory: GoalMemory, T: NDArray[np.float64], apart_m: float = 2.0) -> NDArray[np.float64]:
+def lead_s(memory: GoalMemory, T: Floats, apart_m: float = 2.0) -> Floats:
     """By how many seconds the quickest way from each cell leads over the quickest other way, shape (n_y, n_x).
 
     T: s, from `GoalMemory.times_to`; inf where there is one way only. Another way begins with a link to a cell with a lower
@@ -378,7 +373,7 @@ def lead_s(memory: GoalMemory, T: NDArray[np.float64], apart_m: float = 2.0) -> 
     quickest = np.full(t.size, np.inf)
     quickest[cells] = via[order][first]
     lead = np.full(t.size, np.inf)
-    ways: dict[int, NDArray[np.int64]] = {}
+    ways: dict[int, Ints] = {}
     for row in order:
         i, j = int(here[row]), int(there[row])
         if lead[i] == np.inf and j != following[i]:  # the quickest links come first
@@ -388,7 +383,7 @@ def lead_s(memory: GoalMemory, T: NDArray[np.float64], apart_m: float = 2.0) -> 
     return lead.reshape(n_y, n_x)
 
 
-def _way(cell: int, following: NDArray[np.int64]) -> NDArray[np.int64]:
+def _way(cell: int, following: Ints) -> Ints:
     """The cells from this one to the goal."""
     way = [cell]
     while following[way[-1]] >= 0:
@@ -396,13 +391,13 @@ def _way(cell: int, following: NDArray[np.int64]) -> NDArray[np.int64]:
     return np.array(way)
 
 
-def _parting(a: NDArray[np.int64], b: NDArray[np.int64], n_x: int, n_y: int) -> float:
+def _parting(a: Ints, b: Ints, n_x: int, n_y: int) -> float:
     """The largest distance (cells) of a cell of either way from the other way."""
     dx, dy = _offset(a[:, None] % n_x, b[None] % n_x, n_x), _offset(a[:, None] // n_x, b[None] // n_x, n_y)
     apart = np.hypot(dx, dy)
     return float(max(apart.min(0).max(), apart.min(1).max()))
 
 
-def _offset(a: NDArray[np.int64], b: NDArray[np.int64], size: int) -> NDArray[np.float64]:
+def _offset(a: Ints, b: Ints, size: int) -> Floats:
     """Cells from a to b, the shorter way round."""
     return ((b - a + size / 2) % size - size / 2).astype(np.float64)

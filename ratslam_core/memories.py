@@ -12,7 +12,7 @@ from ratslam_core.goal_memory import GoalMemory
 from ratslam_core.occupancy_grid import MapGrid, OccupancyGrid
 from ratslam_core.params import OccupancyParams
 from ratslam_core.parts import PoseCellsPart
-from ratslam_core.types import Packet
+from ratslam_core.types import Floats, Packet
 
 
 @kind("memories/2")
@@ -30,7 +30,7 @@ class Memories:
         self.goal_memory, self.occupancy, self.map_grid, self.params = goal_memory, occupancy, map_grid, params
         self._under_way_s = 0.0
 
-    def require_sonars(self, ranges_m: NDArray[np.floating] | None) -> NDArray[np.float64] | None:
+    def require_sonars(self, ranges_m: NDArray[np.floating] | None) -> Floats | None:
         """The ranges as they are needed, or a ValueError that says what is wrong with them."""
         if ranges_m is None:
             return None
@@ -41,7 +41,7 @@ class Memories:
     def learn(
         self,
         tick: Tick,
-        scan: NDArray[np.float64] | None,
+        scan: Floats | None,
         pose_cells: PoseCellsPart,
         map_: ExperienceMap,
         packet: Packet,

@@ -15,7 +15,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from disk import kind
-from ratslam_core.types import Packet, Pose2, require_finite, wrap_angle
+from ratslam_core.types import Floats, Packet, Pose2, Singles, require_finite, wrap_angle
 
 HALF_BEAM_RAD = math.radians(15) / 2  # of a sonar; Moravec and Elfes
 DEPTH_M = 0.1  # how far off an echo may be; Moravec and Elfes
@@ -31,12 +31,7 @@ MOST_CELLS = 1024  # along one side of a metric picture; a larger map is drawn w
 class OccupancyGrid:
     """The picture in the frame of the pose cells: it wraps as they do and jumps when they relocalise."""
 
-    def __init__(
-        self,
-        shape: tuple[int, int, int],
-        cell_m: float,
-        sonar_angles_rad: Sequence[float] | NDArray[np.float64],
-    ) -> None:
+    def __init__(self, shape: tuple[int, int, int], cell_m: float, sonar_angles_rad: Sequence[float] | Floats) -> None:
         """shape: (n_theta, n_y, n_x) of the pose cells; sonar_angles_rad: from straight ahead, left is positive."""
         if len(shape) != 3 or min(shape) < 1:
             raise ValueError(f"shape must be (n_theta, n_y, n_x), each at least 1 cell, got {shape!r}")
@@ -45,16 +40,16 @@ class OccupancyGrid:
         self._log_odds = np.zeros(shape[1:], np.float32)
 
     @property
-    def log_odds(self) -> NDArray[np.float32]:
+    def log_odds(self) -> Singles:
         """log p / (1 - p), shape (n_y, n_x), within +-BOUND; 0 where nothing is known. A view."""
         return self._log_odds
 
     @property
-    def probability(self) -> NDArray[np.float32]:
+    def probability(self) -> Singles:
         """That something stands in a cell, shape (n_y, n_x); 0.5 where nothing is known. A copy."""
         return _probability(self._log_odds)
 
-    def require(self, ranges_m: NDArray[np.floating]) -> NDArray[np.float64]:
+    def require(self, ranges_m: NDArray[np.floating]) -> Floats:
         """The scan as numbers of double precision; ValueError when it cannot be one."""
         return _ranges(ranges_m, self._angles)
 
@@ -70,7 +65,7 @@ class OccupancyGrid:
 class MetricPicture:
     """Occupancy in the frame of the experience map."""
 
-    probability: NDArray[np.float32]  # shape (n_y, n_x), 0.5 where nothing is known
+    probability: Singles  # shape (n_y, n_x), 0.5 where nothing is known
     origin_xy_m: tuple[float, float]  # the middle of cell [0, 0]
     cell_m: float
 
@@ -81,7 +76,7 @@ class MapGrid:
     active, and drawn where that experience is now. test_occupancy_grid.py::test_the_picture_bends_with_the_map.
     """
 
-    def __init__(self, sonar_angles_rad: Sequence[float] | NDArray[np.float64]) -> None:
+    def __init__(self, sonar_angles_rad: Sequence[float] | Floats) -> None:
         self._angles = _angles(sonar_angles_rad)
         self._scans = np.zeros((256, KEPT, 3 + self._angles.size), np.float32)  # x, y, heading, ranges
         self._count = np.zeros(256, np.int64)  # scans ever kept of each experience; the newest is at (count - 1) % kept
@@ -115,7 +110,7 @@ class MapGrid:
         newest[3:] = ranges
         self._known = max(self._known, experience + 1)
 
-    def draw(self, poses: NDArray[np.float64], cell_m: float = 0.25) -> MetricPicture:
+    def draw(self, poses: Floats, cell_m: float = 0.25) -> MetricPicture:
         """Draw all kept scans at these poses of the experiences, shape (n, 3): x, y (m), heading (rad). Not called every step.
 
         The picture reaches as far as the beams do. A map too large for MOST_CELLS a side is drawn with larger cells.
@@ -145,7 +140,7 @@ class MapGrid:
         return MetricPicture(_probability(log_odds), (left * cell_m, low * cell_m), cell_m)
 
 
-def _probability(log_odds: NDArray[np.float32]) -> NDArray[np.float32]:
+def _probability(log_odds: Singles) -> Singles:
     return (1 / (1 + np.exp(-log_odds))).astype(np.float32)
 
 
@@ -155,14 +150,14 @@ def _positive(name: str, value: float) -> float:
     return float(value)
 
 
-def _angles(sonar_angles_rad: Sequence[float] | NDArray[np.float64]) -> NDArray[np.float64]:
+def _angles(sonar_angles_rad: Sequence[float] | Floats) -> Floats:
     angles = np.array(sonar_angles_rad, np.float64)
     if angles.ndim != 1 or angles.size == 0 or not np.isfinite(angles).all():
         raise ValueError(f"sonar_angles_rad must be a row of at least one finite angle, got {sonar_angles_rad!r}")
     return angles
 
 
-def _ranges(ranges_m: NDArray[np.floating], angles: NDArray[np.float64]) -> NDArray[np.float64]:
+def _ranges(ranges_m: NDArray[np.floating], angles: Floats) -> Floats:
     ranges = np.asarray(ranges_m, np.float64)
     if ranges.shape != angles.shape:
         raise ValueError(f"ranges_m must have shape {angles.shape}, one for each sonar, got {ranges.shape}")
@@ -172,7 +167,7 @@ def _ranges(ranges_m: NDArray[np.floating], angles: NDArray[np.float64]) -> NDAr
 
 
 @njit(cache=True, nogil=True)
-def _none_negative(ranges: NDArray[np.float64]) -> bool:
+def _none_negative(ranges: Floats) -> bool:
     bad = 0
     for r in ranges:
         bad += not r >= 0.0  # so that nan is bad, too
@@ -181,28 +176,14 @@ def _none_negative(ranges: NDArray[np.float64]) -> bool:
 
 @njit(cache=True, nogil=True)
 def _scans(
-    log_odds: NDArray[np.float32],
-    x: NDArray[np.float64],
-    y: NDArray[np.float64],
-    heading: NDArray[np.float64],
-    angles: NDArray[np.float64],
-    ranges: NDArray[np.float64],
-    cell_m: float,
+    log_odds: Singles, x: Floats, y: Floats, heading: Floats, angles: Floats, ranges: Floats, cell_m: float
 ) -> None:
     for k in range(len(x)):
         _scan(log_odds, x[k], y[k], heading[k], angles, ranges[k], cell_m)
 
 
 @njit(cache=True, nogil=True)
-def _scan(
-    log_odds: NDArray[np.float32],
-    x: float,
-    y: float,
-    heading: float,
-    angles: NDArray[np.float64],
-    ranges: NDArray[np.float64],
-    cell_m: float,
-) -> None:
+def _scan(log_odds: Singles, x: float, y: float, heading: float, angles: Floats, ranges: Floats, cell_m: float) -> None:
     """l <- clip(l + log p / (1 - p)) for one beam after the other, on a grid that wraps. x, y in cells, the rest SI.
 
     p = (1 - FREE E) / 2 before the echo at R, E = (1 - (d / (R - eps))^2) (1 - (theta / w)^2)

@@ -7,11 +7,8 @@ from __future__ import annotations
 
 from typing import Any, Protocol
 
-import numpy as np
-from numpy.typing import NDArray
-
 from ratslam_core.pose_graph.pose_graph import PoseGraph
-from ratslam_core.types import Odometry, Packet, Pose2, Recognition
+from ratslam_core.types import Bytes, Floats, Ints, Ints32, Odometry, Packet, Pose2, Recognition, Singles
 
 
 class GeometricVerification(Protocol):
@@ -50,9 +47,9 @@ class LocalViewPart(Protocol):
 
     def observe(
         self,
-        image: NDArray[np.uint8] | None,
+        image: Bytes | None,
         scene: int | None = None,
-        ranges_m: NDArray[np.float64] | None = None,
+        ranges_m: Floats | None = None,
         turned_rad: float = 0.0,
         room: Room | None = None,
         /,
@@ -66,9 +63,7 @@ class LocalViewPart(Protocol):
         """The heading that a view shifted by a column stands for, 0 where none is told."""
         ...
 
-    def apart_at(
-        self, views: NDArray[np.int64], shifts: NDArray[np.int64], slack: int, /
-    ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    def apart_at(self, views: Ints, shifts: Ints, slack: int, /) -> tuple[Floats, Ints]:
         """How unlike each of these known views (k,) is to what was seen last, shifted by so many columns, give or take
         `slack`, in any unit; and by how many of these columns it is least unlike."""
         ...
@@ -89,12 +84,12 @@ class PoseCellsPart(Protocol):
     shape: tuple[int, int, int]  # layers, cells along y' and x'
 
     @property
-    def active(self) -> tuple[NDArray[np.int32], NDArray[np.float32]]:
+    def active(self) -> tuple[Ints32, Singles]:
         """Rows (x, y, theta, flat index) of the n cells with activity, shape (n, 4), and their activities, shape (n,)."""
         ...
 
     @property
-    def slot(self) -> NDArray[np.int32]:
+    def slot(self) -> Ints32:
         """For each cell 1 + its row in `active`, 0 when it is not active."""
         ...
 
@@ -107,7 +102,7 @@ class PoseCellsPart(Protocol):
         """Path integration: the robot moved as its wheels say."""
         ...
 
-    def inject(self, cells: NDArray[np.int32], values: NDArray[np.float32], /) -> None:
+    def inject(self, cells: Ints32, values: Singles, /) -> None:
         """Add activity to cells, by their flat indices."""
         ...
 
@@ -185,7 +180,7 @@ class KidnapDetectorPart(Protocol):
     sure: bool  # whether the last jump can be nothing else
     params: Any
 
-    def observe(self, image_change: float, ranges_m: NDArray[np.float64] | None, beats: int = 1, /) -> bool: ...
+    def observe(self, image_change: float, ranges_m: Floats | None, beats: int = 1, /) -> bool: ...
     def declare(self, experiences: int, /) -> None: ...
     def find(self) -> None: ...
     def settle(self, agrees: bool, known: int, beats: int = 1, /) -> bool:

@@ -14,7 +14,7 @@ from ratslam_core.local_view.recogniser import NOTHING
 from ratslam_core.localisation import again
 from ratslam_core.parts import GeometricVerification
 from ratslam_core.pose_graph.transitions import require_behaviour
-from ratslam_core.types import Estimate, Odometry, Recognition
+from ratslam_core.types import Bytes, Estimate, Floats, Odometry, Recognition
 
 # The stages of `RatSlam.step`, in the papers' order.
 STAGES = ("view match", "injection", "path integration", "attractor", "experience", "correction", "memories")
@@ -30,7 +30,7 @@ class RatSlam(Brain):
 
     def step(
         self,
-        image: NDArray[np.uint8] | None,
+        image: Bytes | None,
         odometry: Odometry,
         *,
         scene: int | None = None,
@@ -72,7 +72,7 @@ class RatSlam(Brain):
         self.relocalisations += jumped
         return Estimate(map_.active, created, map_.robot, packet, seen, jumped)
 
-    def _notice_kidnap(self, scan: NDArray[np.float64] | None, tick: Tick) -> None:
+    def _notice_kidnap(self, scan: Floats | None, tick: Tick) -> None:
         if self.kidnap_detector.observe(self.local_view.image_change, scan, tick.beats):
             self.declare_kidnapped(sure=self.kidnap_detector.sure)
 

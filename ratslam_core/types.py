@@ -4,11 +4,21 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from disk import kind
+
+# Arrays by what they hold. Docstrings give shapes and units.
+Floats: TypeAlias = NDArray[np.float64]
+Singles: TypeAlias = NDArray[np.float32]
+Ints: TypeAlias = NDArray[np.int64]
+Ints32: TypeAlias = NDArray[np.int32]
+Uints: TypeAlias = NDArray[np.uint32]
+Bytes: TypeAlias = NDArray[np.uint8]
+Flags: TypeAlias = NDArray[np.bool_]
 
 
 def wrap_angle(angle_rad: float) -> float:
@@ -17,7 +27,7 @@ def wrap_angle(angle_rad: float) -> float:
     return math.pi if wrapped == -math.pi else wrapped
 
 
-def wrap_angles(angles_rad: NDArray[np.float64]) -> NDArray[np.float64]:
+def wrap_angles(angles_rad: Floats) -> Floats:
     """The same directions, between -pi and pi."""
     return np.remainder(angles_rad + math.pi, 2 * math.pi) - math.pi
 

@@ -15,7 +15,6 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from disk import kind
 from ratslam_core.experience_map.temporal_map import TemporalMap
@@ -30,7 +29,7 @@ from ratslam_core.parts import GeometricVerification, LocalViewPart, Optimiser
 from ratslam_core.pose_graph.pose_graph import PoseGraph
 from ratslam_core.pose_graph.relaxation import has_diverged
 from ratslam_core.pose_graph.transitions import PreintegratedOdometry, moved_by, require_behaviour
-from ratslam_core.types import IDENTITY, Odometry, Packet, Pose2, Recognition, require_finite, wrap_angle
+from ratslam_core.types import IDENTITY, Floats, Ints, Odometry, Packet, Pose2, Recognition, require_finite, wrap_angle
 
 CARRIED = 400.0  # cells: how far off the robot may be after it was carried
 BLIND = 4.0  # cells: when there is nothing to see, only experiences this near in the map can become active,
@@ -329,7 +328,7 @@ class ExperienceMap(PoseGraph):
         own = found[self.submap_of[found] == self.submaps.current]
         return not len(own) or bool(self._away(own, self.robot_here).min() <= gate_m)
 
-    def _away(self, which: NDArray[np.int64], pose: Pose2) -> NDArray[np.float64]:
+    def _away(self, which: Ints, pose: Pose2) -> Floats:
         return np.hypot(self.poses[which, 0] - pose.x, self.poses[which, 1] - pose.y)
 
     def _most_energetic(self, packet: Packet, view: int, gate_m: float) -> int:
@@ -514,7 +513,7 @@ class _Arrival:
     """The transition that led to the active experience, kept as long as a better observation may measure it again."""
 
     row: int
-    move: NDArray[np.float64]  # of the row before this passage
+    move: Floats  # of the row before this passage
     weight: float  # of the row before this passage
     came: Pose2  # the robot in the frame of the experience before, at the best observation of the active one
     sigma: float

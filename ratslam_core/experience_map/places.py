@@ -13,9 +13,9 @@ from dataclasses import dataclass
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
 from ratslam_core.pose_graph.pose_graph import PoseGraph
+from ratslam_core.types import Flags, Floats, Ints
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,12 +41,12 @@ class Places:
     """The experiences of a map by place. A place is named by its first experience; those within the radius belong to it."""
 
     radius_m: float
-    first: NDArray[np.int64]  # (k,): the first experience of each place
-    place_of: NDArray[np.int64]  # (n,): the place of each experience, a row of `first`
+    first: Ints  # (k,): the first experience of each place
+    place_of: Ints  # (n,): the place of each experience, a row of `first`
     multiple_representations: tuple[MultipleRepresentation, ...]
     hash_collisions: tuple[HashCollision, ...]
 
-    def together_with(self, experience: int) -> NDArray[np.int64]:
+    def together_with(self, experience: int) -> Ints:
         """All experiences of the same place, including this one."""
         if not 0 <= experience < len(self.place_of):
             raise ValueError(f"experience must be from 0 to {len(self.place_of) - 1}, got {experience!r}")
@@ -80,12 +80,12 @@ def find_places(map_: PoseGraph, radius_m: float = 0.5) -> Places:
     return Places(radius_m, first, place_of.astype(np.int64), tuple(multiple), tuple(collisions))
 
 
-def _collision(state: NDArray[np.float64], group: list[int]) -> HashCollision:
+def _collision(state: Floats, group: list[int]) -> HashCollision:
     x, y, theta = map(float, state)
     return HashCollision(x, y, theta, tuple(group))
 
 
-def _groups(owner: NDArray[np.int64], chosen: NDArray[np.bool_]) -> list[list[int]]:
+def _groups(owner: Ints, chosen: Flags) -> list[list[int]]:
     """The chosen experiences of each owner that has two or more, by owner."""
     several = np.bincount(owner[chosen], minlength=len(owner)) > 1
     members = np.flatnonzero(chosen & several[owner])
@@ -102,9 +102,7 @@ def _between(a: float, b: float, ring: float) -> float:
 
 
 @njit(cache=True, nogil=True)
-def _first_near(
-    at: NDArray[np.float64], ring_x: float, ring_y: float, ring_t: float, reach: float, reach_t: float
-) -> NDArray[np.int64]:
+def _first_near(at: Floats, ring_x: float, ring_y: float, ring_t: float, reach: float, reach_t: float) -> Ints:
     """(n,): the earliest leader within reach of each row. A row that has none becomes a leader, its own.
 
     at: (n, 3). Leaders are kept in hashed buckets as wide as the reach, so only a row's own bucket and those beside it
@@ -143,7 +141,7 @@ def _first_near(
 
 
 @njit(cache=True, nogil=True, inline="always")
-def _buckets(around: NDArray[np.int64], value: float, ring: float, reach: float, prime: int) -> int:
+def _buckets(around: Ints, value: float, ring: float, reach: float, prime: int) -> int:
     """Write the coordinate's own bucket, then its neighbours, each once and times a prime; returns how many.
 
     Buckets are a little wider than the reach, so that rounding never hides a row that is just within it.
@@ -161,14 +159,14 @@ def _buckets(around: NDArray[np.int64], value: float, ring: float, reach: float,
 
 @njit(cache=True, nogil=True)
 def _rivals(
-    place: NDArray[np.int64],
-    facing: NDArray[np.float64],
-    states: NDArray[np.float64],
+    place: Ints,
+    facing: Floats,
+    states: Floats,
     ring: tuple[float, float, float],
     reach_facing: float,
     reach: float,
     reach_t: float,
-) -> NDArray[np.bool_]:
+) -> Flags:
     """(n,): the first experiences of states that share place and facing with another state.
 
     place: (n,) the first experience of each one's place.
@@ -205,7 +203,7 @@ def _turned(a: float, b: float) -> float:
 
 
 @njit(cache=True, nogil=True)
-def _apart_in_map(state: NDArray[np.int64], poses: NDArray[np.float64], far: float) -> NDArray[np.bool_]:
+def _apart_in_map(state: Ints, poses: Floats, far: float) -> Flags:
     """(n,): whether an experience is the first of its state at its place; places are more than `far` (m) apart.
 
     state: (n,) the first experience of each one's state.

@@ -9,11 +9,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from disk import kind
 from ratslam_core.pose_graph.pose_graph import PoseGraph
 from ratslam_core.solvers import dijkstra
+from ratslam_core.types import Floats, Ints, Ints32
 
 
 @kind("route/1")
@@ -21,8 +21,8 @@ from ratslam_core.solvers import dijkstra
 class Route:
     """The quickest way: experiences from here to the goal and the seconds at which each is reached."""
 
-    experiences: NDArray[np.int64]
-    arrival_s: NDArray[np.float64]
+    experiences: Ints
+    arrival_s: Floats
 
 
 @kind("temporal map/1")
@@ -50,7 +50,7 @@ class TemporalMap:
         self._times = np.zeros(0)
         self._parent = np.zeros(0, np.int32)
 
-    def times_to(self, goal: int | Sequence[int], delays: NDArray[np.float64] | None = None) -> NDArray[np.float64]:
+    def times_to(self, goal: int | Sequence[int], delays: Floats | None = None) -> Floats:
         """Seconds from every experience to this one (and back), or to the nearest in time of several, shape (n,); inf
         where no way is known. test_temporal_map.py::test_of_several_goals_the_quickest_counts.
 
@@ -60,7 +60,7 @@ class TemporalMap:
         self._answer(goal, delays)
         return self._times.copy()
 
-    def route(self, start: int, goal: int | Sequence[int], delays: NDArray[np.float64] | None = None) -> Route | None:
+    def route(self, start: int, goal: int | Sequence[int], delays: Floats | None = None) -> Route | None:
         """The quickest way, None when there is none. Among equal ways, the one over experiences with lower numbers."""
         self._require(start)
         self._answer(goal, delays)
@@ -76,7 +76,7 @@ class TemporalMap:
         nodes = dijkstra.trace(start, self._times, self._asked.links, self._asked.near)
         return Route(nodes, self._times[start] - self._times[nodes])
 
-    def _answer(self, goal: int | Sequence[int], delays: NDArray[np.float64] | None) -> _Asked:
+    def _answer(self, goal: int | Sequence[int], delays: Floats | None) -> _Asked:
         """Bring times and tree up to date for this goal; returns what they hold for."""
         goals = (goal,) if isinstance(goal, int | np.integer) else tuple(goal)
         if not goals:
@@ -102,14 +102,14 @@ class TemporalMap:
 class _Asked:
     """Links, their times, and for shortcuts the places, as they are now."""
 
-    def __init__(self, map_: PoseGraph, delays: NDArray[np.float64] | None) -> None:
+    def __init__(self, map_: PoseGraph, delays: Floats | None) -> None:
         graph, reach = map_.transitions.graph, float(map_.params.shortcut_m)
         self.seconds = np.maximum(map_.transitions.seconds(map_.poses, map_.pace), dijkstra.LEAST_S)
         if delays is not None:
             self.seconds += delays
         self.changes, self.reach, self.pace = graph.changes, reach, map_.pace
         self.poses = map_.poses.copy() if reach > 0 else map_.poses
-        grid: tuple[NDArray[np.int32], NDArray[np.int32]] = (
+        grid: tuple[Ints32, Ints32] = (
             dijkstra.buckets(self.poses, reach) if reach > 0 else (np.zeros(0, np.int32), np.zeros(0, np.int32))
         )
         self.links = graph.start, graph.used, graph.half, graph.other, self.seconds

@@ -25,14 +25,10 @@ from typing import Protocol
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
 from disk import kind
 from ratslam_core.params import EvidenceParams
-from ratslam_core.types import Odometry, Pose2, wrap_angle, wrap_angles
-
-Rows = NDArray[np.float64]
-Whole = NDArray[np.int64]
+from ratslam_core.types import Flags, Floats, Ints, Ints32, Odometry, Pose2, wrap_angle, wrap_angles
 
 MOST = 32  # hypotheses
 UNIT, UNIT_RAD = 4.0, 1.0  # cells; so long a way, or so wide a turn, is one unit of evidence
@@ -57,10 +53,10 @@ LEAST_PULL = 0.15
 LEAST_UNITS = 0.1  # of way after which it pays to look again, for a robot in doubt; one that is lost looks all the time
 AGAINST, FOR = -2.0, 7.0  # nats that one unit of evidence can say at most
 # The likeness: the least difference to a view near the hypothesis, over the tenth of all differences that is least.
-LIKENESS: Rows = np.array([0.2, 0.35, 0.45, 0.55, 0.65, 0.75, 0.85, 0.95, 1.05, 1.2])
+LIKENESS: Floats = np.array([0.2, 0.35, 0.45, 0.55, 0.65, 0.75, 0.85, 0.95, 1.05, 1.2])
 # What that says, in nats, by how near views there are: within so many cells and radians. The nearest that there are count.
-RINGS: Rows = np.array([(2.0, 0.3), (2.0, 0.52), (4.0, 0.3)])
-NATS: Rows = np.array(
+RINGS: Floats = np.array([(2.0, 0.3), (2.0, 0.52), (4.0, 0.3)])
+NATS: Floats = np.array(
     [
         [5.8, 4.2, 2.7, 1.3, -0.4, -1.7, -2.5, -2.9, -3.1, -3.1],
         [4.3, 4.3, 3.3, 2.4, 1.1, -0.3, -1.1, -1.7, -1.9, -2.2],
@@ -75,7 +71,7 @@ class Views(Protocol):
 
     @property
     def column_rad(self) -> float: ...
-    def apart_at(self, views: Whole, shifts: Whole, slack: int, /) -> tuple[Rows, Whole]: ...
+    def apart_at(self, views: Ints, shifts: Ints, slack: int, /) -> tuple[Floats, Ints]: ...
 
 
 class Map(Protocol):
@@ -84,11 +80,11 @@ class Map(Protocol):
     cell_m: float
 
     @property
-    def poses(self) -> Rows: ...
+    def poses(self) -> Floats: ...
     @property
-    def views(self) -> Whole: ...
+    def views(self) -> Ints: ...
     @property
-    def submap_of(self) -> NDArray[np.int32]: ...
+    def submap_of(self) -> Ints32: ...
     @property
     def robot_here(self) -> Pose2: ...
     def log_prior(self, experience: int, pose: Pose2, /) -> float: ...
@@ -141,7 +137,7 @@ class Evidence:
         self.belief, self.known, self._count, self.in_doubt = None, known, 0, False
 
     @property
-    def hypotheses(self) -> Rows:
+    def hypotheses(self) -> Floats:
         """x, y (m), heading (rad) in the map, log odds against a new place, units of evidence, submap, most log odds; (n, 7)."""
         return self._rows[: self._count]
 
@@ -182,13 +178,13 @@ class Evidence:
         like = possible[among] & (apart <= LIKE * usual)
         among, apart, shifts = among[like], apart[like], shifts[like]
         best = np.argsort(apart, kind="stable")[:SUGGESTED]
-        facing: Rows = shifts[best] * np.float64(views.column_rad)
+        facing: Floats = shifts[best] * np.float64(views.column_rad)
         self._suggest(map_, among[best], facing, apart[best] / usual, max(units, LEAST_PULL))
         least = max(self.here, *self.hypotheses[:, ODDS], 0.0) - DOUBTED if self.in_doubt else FORGOTTEN
         self._count = _merge(self._rows, self._count, least, self.cell_m)
         self._believe(map_, views, known)
 
-    def _weigh(self, map_: Map, views: Views, known: Whole, usual: float, units: float, submap: int) -> None:
+    def _weigh(self, map_: Map, views: Views, known: Ints, usual: float, units: float, submap: int) -> None:
         there = _Expected(map_, views, known, self.hypotheses)
         _weigh(self.hypotheses, there.ring, there.apart / usual, units)
         if self.in_doubt:
@@ -198,7 +194,7 @@ class Evidence:
             _weigh(here, there.ring, there.apart / usual, units)
             self.here = float(here[0, ODDS])
 
-    def _suggest(self, map_: Map, experiences: Whole, facing: Rows, likeness: Rows, units: float) -> None:
+    def _suggest(self, map_: Map, experiences: Ints, facing: Floats, likeness: Floats, units: float) -> None:
         """The best views say more exactly where old hypotheses are, or begin new ones."""
         places = map_.poses[experiences].copy()
         places[:, 2] += facing
@@ -209,7 +205,7 @@ class Evidence:
             odds = prior + nats(likeness[k], 0)
             self._count = _begin(self._rows, self._count, places[k], odds, submaps[k], prior + MOST_SAID)
 
-    def weighed(self, robot: Pose2) -> tuple[Rows, list[float]]:
+    def weighed(self, robot: Pose2) -> tuple[Floats, list[float]]:
         """The hypotheses of another place than where the robot maps, (n, 7), and the log odds of all that stands beside them."""
         rows = self.hypotheses
         if not self.in_doubt:
@@ -217,7 +213,7 @@ class Evidence:
         here = self._here(robot)
         return rows[~here], [self.here, *rows[here, ODDS], -self.params.unnoticed]
 
-    def _believe(self, map_: Map, views: Views, known: Whole) -> None:
+    def _believe(self, map_: Map, views: Views, known: Ints) -> None:
         self.belief = None
         rows, beside = self.weighed(map_.robot_here)
         if not len(rows):
@@ -236,7 +232,7 @@ class Evidence:
             pose = Pose2(x, y, wrap_angle(heading))
             self.belief = Belief(pose, odds, int(there.experience[0]), float(there.facing[0]))
 
-    def _here(self, robot: Pose2) -> NDArray[np.bool_]:
+    def _here(self, robot: Pose2) -> Flags:
         """Which hypotheses are where a robot in doubt is mapping, since a map is a little off."""
         rows = self.hypotheses
         turn = np.abs(wrap_angles(rows[:, HEADING] - robot.heading_rad))
@@ -248,14 +244,14 @@ class Evidence:
         return self.in_doubt and self._quiet > QUIET
 
 
-def _row(pose: Pose2, odds: float, submap: int) -> Rows:
+def _row(pose: Pose2, odds: float, submap: int) -> Floats:
     return np.array([[pose.x, pose.y, pose.heading_rad, odds, 1.0, submap, math.inf]], np.float64)
 
 
 class _Expected:
     """For each hypothesis the view near it that is most like what is seen."""
 
-    def __init__(self, map_: Map, views: Views, known: Whole, rows: Rows) -> None:
+    def __init__(self, map_: Map, views: Views, known: Ints, rows: Floats) -> None:
         column = views.column_rad
         self.ring, pairs = _near(rows, map_.poses, map_.submap_of, known, column, map_.cell_m)
         owner, which, shift = pairs.T
@@ -265,7 +261,7 @@ class _Expected:
 
 
 @njit(cache=True, nogil=True)
-def _least(rows: int, owner: Whole, which: Whole, apart: Rows, by: Whole) -> tuple[Rows, Whole, Whole]:
+def _least(rows: int, owner: Ints, which: Ints, apart: Floats, by: Ints) -> tuple[Floats, Ints, Ints]:
     """For each hypothesis how unlike the most alike of its views is, which experience has it, and at which shift."""
     least, experience, shift = np.full(rows, np.inf), np.full(rows, -1), np.zeros(rows, np.int64)
     for k in range(len(owner)):
@@ -277,8 +273,8 @@ def _least(rows: int, owner: Whole, which: Whole, apart: Rows, by: Whole) -> tup
 
 @njit(cache=True, nogil=True)
 def _near(
-    rows: Rows, poses: Rows, submaps: NDArray[np.int32], known: Whole, column_rad: float, cell_m: float
-) -> tuple[Whole, Whole]:
+    rows: Floats, poses: Floats, submaps: Ints32, known: Ints, column_rad: float, cell_m: float
+) -> tuple[Ints, Ints]:
     """The ring of each hypothesis, -1 where it has no views; and (hypothesis, experience, shift in columns) of those there."""
     ring = np.full(len(rows), -1, np.int64)
     pairs = np.empty((MOST_PAIRS, 3), np.int64)
@@ -306,7 +302,7 @@ def nats(likeness: float, ring: int) -> float:
 
 
 @njit(cache=True, nogil=True)
-def _weigh(rows: Rows, ring: Whole, likeness: Rows, units: float) -> None:
+def _weigh(rows: Floats, ring: Ints, likeness: Floats, units: float) -> None:
     for h in range(len(rows)):
         rows[h, ODDS] -= LEAK * units * max(rows[h, ODDS], 0.0)
         if ring[h] >= 0:
@@ -315,7 +311,7 @@ def _weigh(rows: Rows, ring: Whole, likeness: Rows, units: float) -> None:
 
 
 @njit(cache=True, nogil=True)
-def _pull(rows: Rows, places: Rows, submaps: Rows, units: float, cell_m: float) -> NDArray[np.bool_]:
+def _pull(rows: Floats, places: Floats, submaps: Floats, units: float, cell_m: float) -> Flags:
     """Suggested places say more exactly where the hypotheses near them are. Returns near which of them there is one."""
     known = np.zeros(len(places), np.bool_)
     for k in range(len(places)):
@@ -330,7 +326,7 @@ def _pull(rows: Rows, places: Rows, submaps: Rows, units: float, cell_m: float) 
     return known
 
 
-def _begin(rows: Rows, count: int, place: Rows, odds: float, submap: float, ceiling: float) -> int:
+def _begin(rows: Floats, count: int, place: Floats, odds: float, submap: float, ceiling: float) -> int:
     """A new hypothesis, in the place of the least likely if there is no room, unless it is less likely. Returns how many."""
     at = count if count < len(rows) else int(np.argmin(rows[:, ODDS]))
     if at == count or rows[at, ODDS] < odds:
@@ -340,7 +336,7 @@ def _begin(rows: Rows, count: int, place: Rows, odds: float, submap: float, ceil
 
 
 @njit(cache=True, nogil=True)
-def _merge(rows: Rows, count: int, least: float, cell_m: float) -> int:
+def _merge(rows: Floats, count: int, least: float, cell_m: float) -> int:
     """Of hypotheses that have met the likeliest stays; one that is far too unlikely goes. Returns how many are left."""
     rows[:count] = rows[:count][np.argsort(-rows[:count, ODDS], kind="mergesort")]
     left = 0
@@ -357,6 +353,6 @@ def _merge(rows: Rows, count: int, least: float, cell_m: float) -> int:
 
 
 @njit(cache=True, nogil=True)
-def _between(a: Rows, b: Rows) -> tuple[float, float, float]:
+def _between(a: Floats, b: Floats) -> tuple[float, float, float]:
     """From one pose to another: m, m, rad."""
     return b[X] - a[X], b[Y] - a[Y], (b[HEADING] - a[HEADING] + math.pi) % (2 * math.pi) - math.pi

@@ -24,6 +24,7 @@ from numpy.typing import NDArray
 from disk import kind
 from ratslam_core.pose_graph import relaxation
 from ratslam_core.pose_graph.pose_graph import STEP_SIGMA, TURN_CELLS, PoseGraph, disagreement
+from ratslam_core.types import Flags, Floats, Ints
 
 MOST_SWEPT = 8000  # experiences a beat, on average: a larger map is swept in every second beat, or third ...
 WORK_A_STEP = 1e5  # of exact corrections, on average over the beats; so much takes about half a millisecond
@@ -61,7 +62,7 @@ class ExactSolver:
         self._solved_at, self._closures_at_solve = graph.steps, graph.closures
         self._rest_after_solve = work / WORK_A_STEP
 
-    def _contradicted(self, graph: PoseGraph, given_up: NDArray[np.bool_]) -> bool:
+    def _contradicted(self, graph: PoseGraph, given_up: Flags) -> bool:
         """Whether all closures are put on trial: one that was believed is left far off, or one that was given up agrees.
 
         One that was given up and is still far off is no news. test_graduated_trust.py::test_a_lie_is_tried_once.
@@ -72,16 +73,16 @@ class ExactSolver:
         far = off > TRIAL / BAR
         return bool(np.any(far & ~old) or np.any((off < 1.0) & old))
 
-    def _given_up(self, graph: PoseGraph) -> NDArray[np.bool_]:
+    def _given_up(self, graph: PoseGraph) -> Flags:
         """The closures in which the last trial ended without belief, and that were not measured since."""
         t = graph.transitions
-        unbelieved: NDArray[np.bool_] = (t.believed[: t.count] == 0.0) & ~self._odometry(graph) & graph.params.robust
+        unbelieved: Flags = (t.believed[: t.count] == 0.0) & ~self._odometry(graph) & graph.params.robust
         return unbelieved
 
-    def _odometry(self, graph: PoseGraph) -> NDArray[np.bool_]:
+    def _odometry(self, graph: PoseGraph) -> Flags:
         return graph.transitions.chain[: graph.transitions.count]
 
-    def _settle(self, graph: PoseGraph, share: NDArray[np.float64] | None) -> tuple[float, float]:
+    def _settle(self, graph: PoseGraph, share: Floats | None) -> tuple[float, float]:
         """One exact correction; returns the bias it learnt (rad/s) and its work.
 
         share: how far each row is kept, 0 to 1; None: by how well it fits.
@@ -109,9 +110,7 @@ class ExactSolver:
         t.move[: t.count, 2] -= bias * t.turning_s[: t.count]
 
 
-def _given(
-    graph: PoseGraph,
-) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]:
+def _given(graph: PoseGraph) -> tuple[Floats, Ints, Floats, Floats]:
     """Poses, ends, moves and weights of all rows, as views."""
     t = graph.transitions
     return graph.poses, t.ends[: t.count], t.move[: t.count], t.weight[: t.count]
@@ -121,14 +120,7 @@ ODOMETRY_GIVES = 5.0  # sigma of disagreement at which odometry counts half
 HUBER = 1.0  # sigma of disagreement from which on an observation pulls no harder
 
 
-def trust(
-    poses: NDArray[np.float64],
-    links: NDArray[np.int64],
-    moves: NDArray[np.float64],
-    weights: NDArray[np.float64],
-    chain: NDArray[np.bool_],
-    cell_m: float,
-) -> NDArray[np.float64]:
+def trust(poses: Floats, links: Ints, moves: Floats, weights: Floats, chain: Flags, cell_m: float) -> Floats:
     """[ours] How far each link is believed, 0 to 1, given how well the map fits it.
 
     weights: STEP_SIGMA^2 / variance; cell_m: side of a cell of the pose cells; chain: rows of odometry, the others are
@@ -139,7 +131,7 @@ def trust(
     """
     ex, ey, turn = disagreement(poses, links, moves).T
     rad_per_m, sigma_m = TURN_CELLS / cell_m, STEP_SIGMA * cell_m
-    chi: NDArray[np.float64] = np.sqrt(weights * (ex**2 + ey**2 + (turn / rad_per_m) ** 2)) / sigma_m
+    chi: Floats = np.sqrt(weights * (ex**2 + ey**2 + (turn / rad_per_m) ** 2)) / sigma_m
     odometry, observation = 1 / (1 + (chi / ODOMETRY_GIVES) ** 2), np.minimum(1, HUBER / np.maximum(chi, HUBER))
     return np.where(chain, odometry, observation)
 
@@ -151,14 +143,7 @@ MOST_ROUNDS = 100
 DECIDED = 0.01  # a share this near to 0 or 1 no longer changes
 
 
-def kept(
-    poses: NDArray[np.float64],
-    ends: NDArray[np.int64],
-    moves: NDArray[np.float64],
-    weights: NDArray[np.float64],
-    sure: NDArray[np.bool_],
-    cell_m: float,
-) -> tuple[NDArray[np.float64], float]:
+def kept(poses: Floats, ends: Ints, moves: Floats, weights: Floats, sure: Flags, cell_m: float) -> tuple[Floats, float]:
     """How far each row is kept, 0 to 1, and the work. `poses` are changed in place, and fit the rows that are kept.
 
     weights: STEP_SIGMA^2 / variance; cell_m: side of a cell of the pose cells; sure: rows that are never doubted.
@@ -179,13 +164,8 @@ def kept(
 
 
 def contradiction(
-    poses: NDArray[np.float64],
-    ends: NDArray[np.int64],
-    moves: NDArray[np.float64],
-    weights: NDArray[np.float64],
-    rows: NDArray[np.intp],
-    cell_m: float,
-) -> NDArray[np.float64]:
+    poses: Floats, ends: Ints, moves: Floats, weights: Floats, rows: NDArray[np.intp], cell_m: float
+) -> Floats:
     """How far the map contradicts each of these rows, as a share of the bar: a row above 1 is one to give up."""
     ex, ey, turn = disagreement(poses, ends[rows], moves[rows]).T
     variance = (STEP_SIGMA * cell_m) ** 2 / weights[rows] + (SIGMA * cell_m) ** 2

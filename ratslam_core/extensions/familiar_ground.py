@@ -16,14 +16,13 @@ from typing import Protocol
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
 from disk import kind
 from ratslam_core.beats import weight
 from ratslam_core.extensions.pose_filter import PoseFilter
 from ratslam_core.extensions.submaps import Submaps
 from ratslam_core.pose_graph.transitions import Transitions
-from ratslam_core.types import Odometry, Pose2, Recognition
+from ratslam_core.types import Floats, Ints, Ints32, Odometry, Pose2, Recognition
 
 ENOUGH = 0.5  # a place is familiar when the shares of recognised observations of the experiences there add up to this
 OBSERVATIONS = 20  # over which that share is averaged
@@ -46,11 +45,11 @@ class Map(Protocol):
 
     def __len__(self) -> int: ...
     @property
-    def poses(self) -> NDArray[np.float64]: ...
+    def poses(self) -> Floats: ...
     @property
-    def views(self) -> NDArray[np.int64]: ...
+    def views(self) -> Ints: ...
     @property
-    def submap_of(self) -> NDArray[np.int32]: ...
+    def submap_of(self) -> Ints32: ...
     @property
     def robot_here(self) -> Pose2: ...
 
@@ -73,7 +72,7 @@ class FamiliarGround:
         self._found = 0
 
     @property
-    def near(self) -> NDArray[np.int64]:
+    def near(self) -> Ints:
         """The experiences near the robot that face alike; none if it is not sure of its place. A view."""
         return self._near[: self._found]
 
@@ -88,7 +87,7 @@ class FamiliarGround:
         }
 
     @property
-    def share(self) -> NDArray[np.float64]:
+    def share(self) -> Floats:
         """For each experience, which share of the latest observations near it was recognised. A view, with room to spare."""
         return self._share
 
@@ -203,9 +202,7 @@ def _ties(t: Transitions, experience: int) -> int:
 
 
 @njit(cache=True, nogil=True)
-def _count(
-    share: NDArray[np.float64], unseen: NDArray[np.int64], near: NDArray[np.int64], hit: float, rate: float, beats: int
-) -> None:
+def _count(share: Floats, unseen: Ints, near: Ints, hit: float, rate: float, beats: int) -> None:
     for i in near:
         unseen[i] += beats
         share[i] += rate * (hit - share[i])
@@ -213,17 +210,17 @@ def _count(
 
 @njit(cache=True, nogil=True)
 def _near(
-    poses: NDArray[np.float64],
-    views: NDArray[np.int64],
-    submaps: NDArray[np.int32],
+    poses: Floats,
+    views: Ints,
+    submaps: Ints32,
     submap: int,
-    share: NDArray[np.float64],
+    share: Floats,
     x: float,
     y: float,
     heading: float,
     near_m: float,
     near_rad: float,
-    out: NDArray[np.int64],
+    out: Ints,
 ) -> tuple[int, float]:
     """The experiences of a submap near a place that face alike and have a view, and the sum of their shares.
 

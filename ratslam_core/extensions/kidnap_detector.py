@@ -11,13 +11,12 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
 from disk import kind
 from ratslam_core.beats import weight
 from ratslam_core.params import KidnapParams
+from ratslam_core.types import Floats
 
 USUAL_TIMES, USUAL_RATE = 2.0, 0.02  # a jump is more than twice the usual change, a mean over some fifty beats
 MOST_USUAL = 2.0  # a larger change counts as this, since it may be infinite
@@ -39,7 +38,7 @@ class KidnapDetector:
         self._known_before = 0  # how many experiences there were when it happened
         self._agreed = self._settled = 0
 
-    def observe(self, image_change: float, ranges_m: NDArray[np.float64] | None, beats: int = 1) -> bool:
+    def observe(self, image_change: float, ranges_m: Floats | None, beats: int = 1) -> bool:
         """Whether image and sonars say that the robot was carried away since the step before.
 
         image_change: above 1 driving cannot explain it (`LocalView.image_change`); ranges_m: (n_sonars,), m. Sonars
@@ -102,7 +101,7 @@ class NeverKidnapped:
     def __init__(self, params: KidnapParams) -> None:
         self.params = params
 
-    def observe(self, _image_change: float, _ranges_m: NDArray[np.float64] | None, _beats: int = 1) -> bool:
+    def observe(self, _image_change: float, _ranges_m: Floats | None, _beats: int = 1) -> bool:
         return False
 
     def declare(self, _experiences: int) -> None:
@@ -129,9 +128,9 @@ class ScanChange:
     """
 
     def __init__(self) -> None:
-        self._last: NDArray[np.float64] | None = None
+        self._last: Floats | None = None
 
-    def observe(self, ranges_m: NDArray[np.float64] | None) -> float:
+    def observe(self, ranges_m: Floats | None) -> float:
         """By how much the sonars differ from the scan before: the mean of |ln(now / before)|, each at most MOST.
 
         0 when there is nothing to compare with. ranges_m: (n,) metres, none negative; None forgets the scan before.
@@ -143,7 +142,7 @@ class ScanChange:
 
 
 @njit(cache=True, nogil=True)
-def _change(before: NDArray[np.float64], now: NDArray[np.float64]) -> float:
+def _change(before: Floats, now: Floats) -> float:
     total = 0.0
     for k in range(len(now)):
         ratio = min(max(now[k], NEAR_M), REACH_M) / min(max(before[k], NEAR_M), REACH_M)

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from disk import kind
 from ratslam_core.pose_graph.transitions import Transitions
-from ratslam_core.types import Pose2
+from ratslam_core.types import Floats, Ints32, Pose2
 
 SURER = 0.01  # nats that each cell driven adds to the odds of a merge, as long as nothing contradicts it
 
@@ -55,9 +55,7 @@ class Submaps:
             if self.last_merge.log_odds >= most:
                 self.last_merge = None
 
-    def merge(
-        self, other: int, submaps: NDArray[np.int32], poses: NDArray[np.float64], robot: Pose2, claimed: Pose2
-    ) -> None:
+    def merge(self, other: int, submaps: Ints32, poses: Floats, robot: Pose2, claimed: Pose2) -> None:
         """The robot, which is at `robot` on the current submap, is at `claimed` on the other. The younger one moves, and becomes
         part of the older.
 
@@ -69,7 +67,7 @@ class Submaps:
         submaps[moved] = self.current = older
         self.merged += 1
 
-    def undo(self, t: Transitions, poses: NDArray[np.float64], robot: Pose2, claimed: Pose2) -> None:
+    def undo(self, t: Transitions, poses: Floats, robot: Pose2, claimed: Pose2) -> None:
         """The last merge was wrong: the robot is at `claimed`, not at `robot`, and so is all that came with it."""
         assert self.last_merge is not None
         ends = t.ends[: t.count]
@@ -79,7 +77,7 @@ class Submaps:
         move(np.arange(self.last_merge.first, len(poses)), poses, robot, claimed)
 
 
-def move(which: NDArray[np.intp], poses: NDArray[np.float64], robot: Pose2, claimed: Pose2) -> None:
+def move(which: NDArray[np.intp], poses: Floats, robot: Pose2, claimed: Pose2) -> None:
     """Move these experiences in the map, in place and as a whole, so that `robot` comes to `claimed`."""
     way = claimed.compose(robot.inverse())
     for i in which:

@@ -8,7 +8,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ratslam_core.experience_map.experience_map import ExperienceMap, _Arrival
 from ratslam_core.extensions.evidence import CEILING, SUBMAP, Belief, Evidence
@@ -23,7 +22,7 @@ from ratslam_core.local_view.recogniser import LocalView, matcher_of
 from ratslam_core.local_view.view_links import ViewLinks
 from ratslam_core.pose_graph.experiences import BUCKET, Experiences
 from ratslam_core.pose_graph.transitions import BEHAVIOURS, Adjacency, PreintegratedOdometry, Transitions
-from ratslam_core.types import Recognition
+from ratslam_core.types import Ints, Recognition
 
 LARGEST = 1e12  # of metres, seconds and weights
 FASTEST = 10.0  # rad/s, the largest yaw bias
@@ -155,7 +154,7 @@ def _chains(known: Experiences, n: int, room: int) -> None:
     true(np.array_equal(heads.ravel(), wanted), "each bucket must know its newest experience")
 
 
-def _before(keys: NDArray[np.int64]) -> tuple[NDArray[np.int64], dict[int, int]]:
+def _before(keys: Ints) -> tuple[Ints, dict[int, int]]:
     """For each row the last before it with the same key, -1 for none; and the last row of each key."""
     order = np.argsort(keys, kind="stable")
     before = np.full(len(keys), -1, np.int64)
@@ -223,7 +222,7 @@ def _halves(t: Transitions, n: int, nodes: int) -> None:
     true(right.all(), "a half-edge must name the ends of its transition")
 
 
-def _places(start: NDArray[np.int64], used: NDArray[np.int64]) -> NDArray[np.int64]:
+def _places(start: Ints, used: Ints) -> Ints:
     """Where in an arena the blocks' entries in use lie, block after block."""
     begins = np.cumsum(used) - used
     return np.arange(int(used.sum())) + np.repeat(start - begins, used)

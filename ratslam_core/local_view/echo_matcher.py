@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from disk import kind
 from ratslam_core.local_view.matcher import SIZE, Features, Matcher, shift_all, sum_apart
+from ratslam_core.types import Bytes, Floats, Uints
 
 FARTHEST = 1e5  # no two views are that far apart
 
@@ -17,18 +18,18 @@ FARTHEST = 1e5  # no two views are that far apart
 class HeardEchoes:
     """The echoes of all views once more, echo by echo, so that a processor compares many views at once."""
 
-    def __init__(self, known: NDArray[np.uint8], size: int) -> None:
+    def __init__(self, known: Bytes, size: int) -> None:
         """known: (n, size + echoes), the views."""
         room = len(known) + len(known) // 2 + 1024
         self.echoes = np.zeros((known.shape[1] - size, room), np.uint8)
         self.total, self.kept = np.zeros(room, np.int16), np.zeros(room, np.uint32)  # scratch for the search
         self._owner, self._size, self._count = _owner(known), size, 0
 
-    def holds(self, known: NDArray[np.uint8]) -> bool:
+    def holds(self, known: Bytes) -> bool:
         """Whether these are views of the same memory, and perhaps more of them."""
         return _owner(known) is self._owner and self._count <= len(known) <= self.echoes.shape[1]
 
-    def take(self, known: NDArray[np.uint8]) -> None:
+    def take(self, known: Bytes) -> None:
         """Take in what is new."""
         self.echoes[:, self._count : len(known)] = known[self._count :, self._size :].T
         self._count = len(known)
@@ -39,7 +40,7 @@ class HeardEchoes:
             self.echoes[:, view] = new[self._size :]
 
 
-def _owner(array: NDArray[np.uint8]) -> NDArray[np.uint8]:
+def _owner(array: Bytes) -> Bytes:
     """The array whose memory this is a part of."""
     return array.base if isinstance(array.base, np.ndarray) else array
 
@@ -59,7 +60,7 @@ class EchoMatcher(Matcher):
         self.echoes, self.echo_weight = echoes, echo_weight
         self._guess = 0  # where the search begins: a view seen a moment ago is near, and rules out most others
 
-    def nearest(self, known: NDArray[np.uint8], new: Features, most: int) -> tuple[int, float, int]:
+    def nearest(self, known: Bytes, new: Features, most: int) -> tuple[int, float, int]:
         if len(known) == 0:
             return -1, math.inf, 0
         guess = min(self._guess, len(known) - 1)
@@ -76,7 +77,7 @@ class EchoMatcher(Matcher):
         if heard is not None:
             heard.replace(view, new)
 
-    def _heard_in(self, known: NDArray[np.uint8]) -> HeardEchoes:
+    def _heard_in(self, known: Bytes) -> HeardEchoes:
         heard: HeardEchoes | None = getattr(self, "_heard", None)
         if heard is None or not heard.holds(known):
             heard = self._heard = HeardEchoes(known, self.columns * self.rows)
@@ -86,7 +87,7 @@ class EchoMatcher(Matcher):
 
 @njit(cache=True, nogil=True)
 def _nearest(
-    known: NDArray[np.uint8],
+    known: Bytes,
     new: Features,
     most: int,
     columns: int,
@@ -94,11 +95,11 @@ def _nearest(
     echoes: int,
     weight: float,
     guess: int,
-    shifted: NDArray[np.uint8],
-    masks: NDArray[np.uint8],
-    echoes_of: NDArray[np.uint8],
+    shifted: Bytes,
+    masks: Bytes,
+    echoes_of: Bytes,
     total: NDArray[np.int16],
-    kept: NDArray[np.uint32],
+    kept: Uints,
 ) -> tuple[int, float, int]:
     tried, widths = shift_all(new, most, columns, rows, shifted)
     size = columns * rows
@@ -117,7 +118,7 @@ def _nearest(
 
 
 @njit(cache=True, nogil=True)
-def _sum_echoes(echoes_of: NDArray[np.uint8], heard: NDArray[np.uint8], n: int, total: NDArray[np.int16]) -> None:
+def _sum_echoes(echoes_of: Bytes, heard: Bytes, n: int, total: NDArray[np.int16]) -> None:
     """The sum of absolute differences of the echoes of each view; one that is unknown (0) counts as equal."""
     total[:n] = 0
     for k in range(len(heard)):
@@ -131,9 +132,7 @@ def _sum_echoes(echoes_of: NDArray[np.uint8], heard: NDArray[np.uint8], n: int, 
 
 
 @njit(cache=True, nogil=True)
-def _keep_near(
-    total: NDArray[np.int16], n: int, echoes: int, weight: float, limit: float, kept: NDArray[np.uint32]
-) -> NDArray[np.uint32]:
+def _keep_near(total: NDArray[np.int16], n: int, echoes: int, weight: float, limit: float, kept: Uints) -> Uints:
     """The views, in their order, whose echoes alone are no farther than the limit. Without a branch, as none can be foreseen."""
     most = 0
     while most < 255 * echoes and weight * ((most + 1) / echoes) <= limit:
@@ -147,13 +146,13 @@ def _keep_near(
 
 @njit(cache=True, nogil=True, inline="always")
 def _search(
-    known: NDArray[np.uint8],
-    near: NDArray[np.uint32],
+    known: Bytes,
+    near: Uints,
     echo_sums: NDArray[np.int16],
     echoes: int,
-    shifted: NDArray[np.uint8],
-    masks: NDArray[np.uint8],
-    widths: NDArray[np.float64],
+    shifted: Bytes,
+    masks: Bytes,
+    widths: Floats,
     weight: float,
     half: int,
     size: int,

@@ -10,15 +10,15 @@ import math
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
 from disk import kind
 from ratslam_core.params import COLUMNS, ROWS
+from ratslam_core.types import Bytes, Floats, Ints, Ints32
 
 SIZE = COLUMNS * ROWS
 BLOCK = 128  # stored views that stay in the processor's nearest cache while all shifts are tried
 
-Features = NDArray[np.uint8]  # (columns * rows,)
+Features = Bytes  # (columns * rows,)
 
 
 @kind("matcher/1")
@@ -35,7 +35,7 @@ class Matcher:
             _, there, width = overlap(shift, columns, rows)
             self._masks[shift + columns - 1, there : there + width] = 255
 
-    def nearest(self, known: NDArray[np.uint8], new: Features, most: int) -> tuple[int, float, int]:
+    def nearest(self, known: Bytes, new: Features, most: int) -> tuple[int, float, int]:
         """The nearest view, its mean absolute difference over the columns that overlap, and the shift.
 
         known: (n, columns * rows); with none known (-1, inf, 0). Shifts from -most to most columns are tried. Among
@@ -46,15 +46,8 @@ class Matcher:
         return _nearest(known, new, most, self.columns, self.rows, self._shifted, self._masks, self._least, self._at)
 
     def apart_at(
-        self,
-        known: NDArray[np.uint8],
-        new: Features,
-        views: NDArray[np.int64],
-        shifts: NDArray[np.int64],
-        slack: int,
-        most: int,
-        echo_weight: float,
-    ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+        self, known: Bytes, new: Features, views: Ints, shifts: Ints, slack: int, most: int, echo_weight: float
+    ) -> tuple[Floats, Ints]:
         """How far each of these views is from the new one at shifts within `slack` of the one given, and at which of them."""
         return _apart_at_any_size(
             known, new, views, shifts, slack, most, self.columns, self.rows, echo_weight, self._shifted, self._masks
@@ -112,18 +105,18 @@ def least_difference(new: Features, stored: Features, most: int, columns: int, r
 
 @njit(cache=True, nogil=True)
 def _apart_at_any_size(
-    known: NDArray[np.uint8],
+    known: Bytes,
     new: Features,
-    views: NDArray[np.int64],
-    shifts: NDArray[np.int64],
+    views: Ints,
+    shifts: Ints,
     slack: int,
     most: int,
     columns: int,
     rows: int,
     echo_weight: float,
-    shifted: NDArray[np.uint8],
-    masks: NDArray[np.uint8],
-) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    shifted: Bytes,
+    masks: Bytes,
+) -> tuple[Floats, Ints]:
     """For each of these views its least `difference` at shifts within `slack` of the one given, and that shift."""
     size = columns * rows
     tried, widths = shift_all(new, most, columns, rows, shifted)
@@ -135,18 +128,18 @@ def _apart_at_any_size(
 
 @njit(cache=True, nogil=True, inline="always")
 def _apart_at(
-    known: NDArray[np.uint8],
+    known: Bytes,
     new: Features,
-    views: NDArray[np.int64],
-    shifts: NDArray[np.int64],
+    views: Ints,
+    shifts: Ints,
     slack: int,
     most: int,
     size: int,
     echo_weight: float,
-    shifted: NDArray[np.uint8],
-    masks: NDArray[np.uint8],
-    widths: NDArray[np.float64],
-) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    shifted: Bytes,
+    masks: Bytes,
+    widths: Floats,
+) -> tuple[Floats, Ints]:
     least, by = np.full(len(views), np.inf), np.zeros(len(views), np.int64)
     for k in range(len(views)):
         stored = known[views[k]]
@@ -174,9 +167,7 @@ def sum_apart(stored: Features, new: Features, mask: Features, first: int, end: 
 
 
 @njit(cache=True, nogil=True)
-def shift_all(
-    new: Features, most: int, columns: int, rows: int, shifted: NDArray[np.uint8]
-) -> tuple[slice, NDArray[np.float64]]:
+def shift_all(new: Features, most: int, columns: int, rows: int, shifted: Bytes) -> tuple[slice, Floats]:
     """Write the new view, shift by shift, into its rows; which rows these are, and how many bytes overlap in each."""
     first = columns - 1 - most
     widths = np.empty(2 * most + 1)
@@ -210,15 +201,15 @@ def sub_column(new: Features, stored: Features, shift: int, columns: int, rows: 
 
 @njit(cache=True, nogil=True)
 def _nearest(
-    known: NDArray[np.uint8],
+    known: Bytes,
     new: Features,
     most: int,
     columns: int,
     rows: int,
-    shifted: NDArray[np.uint8],
-    masks: NDArray[np.uint8],
-    least: NDArray[np.int32],
-    at: NDArray[np.int64],
+    shifted: Bytes,
+    masks: Bytes,
+    least: Ints32,
+    at: Ints,
 ) -> tuple[int, float, int]:
     tried, widths = shift_all(new, most, columns, rows, shifted)
     if known.shape[1] == SIZE:  # five times as quick with the size as a constant
@@ -234,14 +225,7 @@ def _nearest(
 
 
 @njit(cache=True, nogil=True, inline="always")
-def _least_sums(
-    known: NDArray[np.uint8],
-    shifted: NDArray[np.uint8],
-    masks: NDArray[np.uint8],
-    size: int,
-    least: NDArray[np.int32],
-    at: NDArray[np.int64],
-) -> None:
+def _least_sums(known: Bytes, shifted: Bytes, masks: Bytes, size: int, least: Ints32, at: Ints) -> None:
     """For each shift, the least sum of absolute differences and the first view that has it."""
     least[:] = 1 << 30
     at[:] = -1

@@ -17,7 +17,7 @@ from ratslam_core.local_view.front_ends import FRONT_ENDS, FrontEnd
 from ratslam_core.local_view.matcher import Features, Matcher, heard_apart, least_difference, sub_column, turned_apart
 from ratslam_core.params import LocalViewParams
 from ratslam_core.parts import Room
-from ratslam_core.types import Recognition, nothing_seen
+from ratslam_core.types import Bytes, Floats, Ints, Recognition, nothing_seen
 
 NOTHING = -1
 TURN_SLACK = 0.3  # share of the turn by which the wheels may be wrong about it in a beat
@@ -55,7 +55,7 @@ class LocalView:
         return self._count
 
     @property
-    def templates(self) -> NDArray[np.uint8]:
+    def templates(self) -> Bytes:
         """The features of all known scenes, shape (n, columns * rows + echoes). A view."""
         return self._templates[: self._count]
 
@@ -77,9 +77,7 @@ class LocalView:
         apart = self._least_apart(self.features, stored, most)
         return self._levels(apart + self._heard_apart(self.features, stored), self.features)
 
-    def apart_at(
-        self, views: NDArray[np.int64], shifts: NDArray[np.int64], slack: int
-    ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    def apart_at(self, views: Ints, shifts: Ints, slack: int) -> tuple[Floats, Ints]:
         """[ours] How unlike (bytes) each of these views (k,) is to what was seen last, shifted by so many columns, give or take
         `slack`; and by which of these it is least unlike, (k,). A front end that knows no shifts compares views as they are.
         test_recogniser.py::test_a_view_is_compared_under_the_turn_that_is_asked_for."""
@@ -107,7 +105,7 @@ class LocalView:
 
     def observe(
         self,
-        image: NDArray[np.uint8] | None,
+        image: Bytes | None,
         scene: int | None = None,
         ranges_m: NDArray[np.floating] | None = None,
         turned_rad: float = 0.0,

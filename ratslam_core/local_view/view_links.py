@@ -11,13 +11,12 @@ from dataclasses import dataclass
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
 from disk import kind
 from ratslam_core.params import LocalViewParams
 from ratslam_core.parts import PoseCellsPart
 from ratslam_core.pose_cells.activity_kernels import FLAT
-from ratslam_core.types import Recognition
+from ratslam_core.types import Flags, Ints, Ints32, Recognition, Singles
 
 LOST = 0.5  # what all links of a view inject together while the robot knows that it is lost
 
@@ -35,7 +34,7 @@ class ViewLinks:
         self.forgotten = 0  # links so far that were weaker than the strongest
         self._seen = np.zeros(4096, np.bool_)
 
-    def of(self, view: int) -> tuple[NDArray[np.int32], NDArray[np.float32]]:
+    def of(self, view: int) -> tuple[Ints32, Singles]:
         """The pose cells that a view is linked to, flat indices, and the strengths."""
         start, used, _ = self._blocks[view] if view < len(self._blocks) else (0, 0, 0)
         return self._cells[start : start + used], self._strength[start : start + used]
@@ -50,7 +49,7 @@ class ViewLinks:
         """How many links there are."""
         return int(self._blocks[:, 1].sum())
 
-    def views_at(self, column: int, columns: int, views: int) -> tuple[NDArray[np.int32], NDArray[np.float32]]:
+    def views_at(self, column: int, columns: int, views: int) -> tuple[Ints32, Singles]:
         """The views, of the first `views`, that are linked to pose cells at one place x', y', and the sums of those links.
 
         column: the place, a flat index modulo `columns`. For inspection only: it goes through all links.
@@ -60,14 +59,7 @@ class ViewLinks:
         linked = np.flatnonzero(strength).astype(np.int32)
         return linked, strength[linked]
 
-    def learn(
-        self,
-        view: int,
-        cells: NDArray[np.int32],
-        activity: NDArray[np.float32],
-        slot: NDArray[np.int32],
-        rate: float | None = None,
-    ) -> None:
+    def learn(self, view: int, cells: Ints32, activity: Singles, slot: Ints32, rate: float | None = None) -> None:
         """beta <- (1 - delta) beta + eta P for all active pose cells. ACRA 2004 eqs. 2-3.
 
         cells, activity, slot: the active set of the pose cells (`PoseCells.active`, `PoseCells.slot`). rate: eta, without it
@@ -104,7 +96,7 @@ class ViewLinks:
         """Drop all links of a view."""
         self._blocks[view, 1] = 0
 
-    def recall(self, view: int, lost: bool = False) -> tuple[NDArray[np.int32], NDArray[np.float32]]:
+    def recall(self, view: int, lost: bool = False) -> tuple[Ints32, Singles]:
         """What the active view injects: min(beta, s_max) per link. ACRA 2004 eq. 4.
 
         [ours] A lost robot's view injects LOST in sum. test_view_links.py::test_a_lost_robot_s_view_injects_more.
@@ -116,7 +108,7 @@ class ViewLinks:
             values *= np.float32(LOST / total)
         return cells, values
 
-    def _make_room(self, view: int, active: int, slot: NDArray[np.int32]) -> None:
+    def _make_room(self, view: int, active: int, slot: Ints32) -> None:
         while view >= len(self._blocks):
             self._blocks = np.concatenate([self._blocks, np.zeros_like(self._blocks)])
         if active > len(self._seen):
@@ -211,12 +203,12 @@ class Injection:
     """What a view put into the pose cells in one step."""
 
     view: int
-    cells: NDArray[np.int32]  # (k,) flat indices
-    values: NDArray[np.float32]  # (k,) activity added to each
+    cells: Ints32  # (k,) flat indices
+    values: Singles  # (k,) activity added to each
 
 
 @njit(cache=True, nogil=True)
-def _count_active(linked: NDArray[np.int32], slot: NDArray[np.int32]) -> int:
+def _count_active(linked: Ints32, slot: Ints32) -> int:
     count = 0
     for k in range(len(linked)):
         if slot[linked[k]] > 0:
@@ -225,13 +217,7 @@ def _count_active(linked: NDArray[np.int32], slot: NDArray[np.int32]) -> int:
 
 
 @njit(cache=True, nogil=True)
-def _copy_blocks(
-    blocks: NDArray[np.int64],
-    old_cells: NDArray[np.int32],
-    old_strength: NDArray[np.float32],
-    cells: NDArray[np.int32],
-    strength: NDArray[np.float32],
-) -> int:
+def _copy_blocks(blocks: Ints, old_cells: Ints32, old_strength: Singles, cells: Ints32, strength: Singles) -> int:
     """Copy the blocks one after the other, in the order of the views; returns where the last one ends."""
     end = 0
     for view in range(len(blocks)):
@@ -246,13 +232,7 @@ def _copy_blocks(
 
 @njit(cache=True, nogil=True)
 def _sum_at(
-    blocks: NDArray[np.int64],
-    views: int,
-    cells: NDArray[np.int32],
-    strength: NDArray[np.float32],
-    column: int,
-    columns: int,
-    out: NDArray[np.float32],
+    blocks: Ints, views: int, cells: Ints32, strength: Singles, column: int, columns: int, out: Singles
 ) -> None:
     for view in range(views):
         start, used = blocks[view, 0], blocks[view, 1]
@@ -263,13 +243,13 @@ def _sum_at(
 
 @njit(cache=True, nogil=True)
 def _learn(
-    linked: NDArray[np.int32],
-    strength: NDArray[np.float32],
+    linked: Ints32,
+    strength: Singles,
     used: int,
-    cells: NDArray[np.int32],
-    activity: NDArray[np.float32],
-    slot: NDArray[np.int32],
-    seen: NDArray[np.bool_],
+    cells: Ints32,
+    activity: Singles,
+    slot: Ints32,
+    seen: Flags,
     eta: np.float32,
     delta: np.float32,
 ) -> int:

@@ -13,11 +13,13 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from ratslam_core.types import Floats, Ints32, Singles
+
 X, Y, THETA, FLAT = 0, 1, 2, 3
 PATCH = 32
-Cells: TypeAlias = NDArray[np.int32]  # (room, 4)
-Values: TypeAlias = NDArray[np.float32]  # (room,)
-Slot: TypeAlias = NDArray[np.int32]  # (n_theta * n_y * n_x,)
+Cells: TypeAlias = Ints32  # (room, 4)
+Values: TypeAlias = Singles  # (room,)
+Slot: TypeAlias = Ints32  # (n_theta * n_y * n_x,)
 Shape: TypeAlias = tuple[int, int, int]  # n_theta, n_y, n_x
 Number = TypeVar("Number", int, float)
 
@@ -70,7 +72,7 @@ def clear(cells: Cells, n: int, slot: Slot) -> None:
 
 
 @njit(cache=True, nogil=True)
-def first_bad(flats: NDArray[np.int32], more: NDArray[np.float32], size: int) -> int:
+def first_bad(flats: Ints32, more: Singles, size: int) -> int:
     """The first row with a cell outside the network or an activity that is negative or not finite, -1 when all are right."""
     for i in range(flats.size):
         if not (0 <= flats[i] < size and 0.0 <= more[i] < np.inf):
@@ -79,15 +81,7 @@ def first_bad(flats: NDArray[np.int32], more: NDArray[np.float32], size: int) ->
 
 
 @njit(cache=True, nogil=True)
-def inject(
-    flats: NDArray[np.int32],
-    more: NDArray[np.float32],
-    cells: Cells,
-    values: Values,
-    n: int,
-    slot: Slot,
-    shape: Shape,
-) -> int:
+def inject(flats: Ints32, more: Singles, cells: Cells, values: Values, n: int, slot: Slot, shape: Shape) -> int:
     """P <- P + injection. A eq. 4. `slot` indexes P before and after."""
     n_y, n_x = shape[1], shape[2]
     for i in range(flats.size):
@@ -103,12 +97,12 @@ def shift(
     n: int,
     distance: float,
     yaw: float,
-    headings: NDArray[np.float64],
+    headings: Floats,
     out_cells: Cells,
     out_values: Values,
     slot: Slot,
     shape: Shape,
-    patch: NDArray[np.float32],
+    patch: Singles,
 ) -> int:
     """P'_xyz = sum over a 2x2x2 cube of alpha_abc P. A eqs. 5-9. `slot` indexes the input, afterwards the output.
 
@@ -172,8 +166,8 @@ def cluster(
     shape: Shape,
     window: int,
     radius: int,
-    owner: NDArray[np.int32],
-    peaks: NDArray[np.int32],
+    owner: Ints32,
+    peaks: Ints32,
     bounds: NDArray[np.int8],
 ) -> tuple[int, int]:
     """Divide the active cells into clusters: repeatedly, the strongest free cell and all free cells within `window` of it.

@@ -25,9 +25,10 @@ from ratslam_core.pose_cells.activity_kernels import (
     cluster,
     offset,
 )
+from ratslam_core.types import Ints, Ints32, Singles
 
 
-def gaussian(sigma: float, radius: int = 0) -> NDArray[np.float32]:
+def gaussian(sigma: float, radius: int = 0) -> Singles:
     """A normalised Gaussian over so many cells to either side; three sigma, and two at least, if none is given."""
     radius = radius or max(2, math.ceil(3 * sigma))
     at = np.arange(-radius, radius + 1)
@@ -40,18 +41,18 @@ def excite(
     cells: Cells,
     values: Values,
     n: int,
-    owner: NDArray[np.int32],
-    peaks: NDArray[np.int32],
+    owner: Ints32,
+    peaks: Ints32,
     bounds: NDArray[np.int8],
     out_cells: Cells,
     out_values: Values,
     slot: Slot,
     shape: Shape,
     window: int,
-    weights: NDArray[np.float32],
+    weights: Singles,
     floor: float | np.float32,
-    box_a: NDArray[np.float32],
-    box_b: NDArray[np.float32],
+    box_a: Singles,
+    box_b: Singles,
 ) -> tuple[int, int]:
     """Cluster and convolve. Returns how many cells are active then, and how many the output must have room for; if it has
     not, nothing has changed, and the first is -1."""
@@ -69,18 +70,18 @@ def convolve(
     cells: Cells,
     values: Values,
     n: int,
-    owner: NDArray[np.int32],
-    peaks: NDArray[np.int32],
+    owner: Ints32,
+    peaks: Ints32,
     bounds: NDArray[np.int8],
     clusters: int,
     out_cells: Cells,
     out_values: Values,
     slot: Slot,
     shape: Shape,
-    weights: NDArray[np.float32],
+    weights: Singles,
     floor: float | np.float32,
-    box_a: NDArray[np.float32],
-    box_b: NDArray[np.float32],
+    box_a: Singles,
+    box_b: Singles,
 ) -> int:
     """P <- eps * P: circular convolution with a 3-D Gaussian as three 1-D passes. A eq. 10.
 
@@ -135,7 +136,7 @@ def convolve(
 
 
 @njit(cache=True, nogil=True)
-def _ring(first: int, count: int, size: int) -> NDArray[np.int64]:
+def _ring(first: int, count: int, size: int) -> Ints:
     """The coordinates of so many successive cells on a ring of this size."""
     at = np.empty(count, np.int64)
     for k in range(count):
@@ -144,14 +145,7 @@ def _ring(first: int, count: int, size: int) -> NDArray[np.int64]:
 
 
 @njit(cache=True, nogil=True)
-def _pass(
-    source: NDArray[np.float32],
-    target: NDArray[np.float32],
-    size: int,
-    inner: tuple[int, int],
-    stride: int,
-    weights: NDArray[np.float32],
-) -> None:
+def _pass(source: Singles, target: Singles, size: int, inner: tuple[int, int], stride: int, weights: Singles) -> None:
     """1-D convolution of the cells from inner[0] to inner[1] along the axis of this stride."""
     radius = weights.size // 2
     target[:size] = 0.0
@@ -165,7 +159,7 @@ def _pass(
 
 @njit(cache=True, nogil=True)
 def _apart(
-    c: int, clusters: int, cells: Cells, peaks: NDArray[np.int32], bounds: NDArray[np.int8], radius: int, shape: Shape
+    c: int, clusters: int, cells: Cells, peaks: Ints32, bounds: NDArray[np.int8], radius: int, shape: Shape
 ) -> bool:
     """Whether no other cluster's box, with its margin, shares a cell with that of cluster c."""
     for other in range(clusters):

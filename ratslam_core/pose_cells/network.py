@@ -20,7 +20,7 @@ from ratslam_core.params import PoseCellParams
 from ratslam_core.pose_cells import activity_kernels as kernels
 from ratslam_core.pose_cells import attractor_kernels as attractor
 from ratslam_core.pose_cells import packet_kernels
-from ratslam_core.types import Packet, require_finite, wrap_angle
+from ratslam_core.types import Ints32, Packet, Singles, require_finite, wrap_angle
 
 MAX_PACKETS = 8  # reported; all are tracked
 Cell = TypeVar("Cell", np.int32, np.float32, np.int8)
@@ -53,20 +53,20 @@ class PoseCells:
     # ------------------------------------------------------------ reading
 
     @property
-    def activity(self) -> NDArray[np.float32]:
+    def activity(self) -> Singles:
         """P as a dense array, shape (n_theta, n_y, n_x), no unit, sums to 1. A copy: for inspection, not for every step."""
         dense = np.zeros(self._slot.size, np.float32)
         dense[self._cells[: self._n, kernels.FLAT]] = self._values[: self._n]
         return dense.reshape(self.shape)
 
     @property
-    def active(self) -> tuple[NDArray[np.int32], NDArray[np.float32]]:
+    def active(self) -> tuple[Ints32, Singles]:
         """The n cells with activity, in no promised order: rows (x, y, theta, flat index), shape (n, 4), in cells and layers,
         and their activities, shape (n,), no unit, > 0, summing to 1. Views that hold until the next change."""
         return self._cells[: self._n], self._values[: self._n]
 
     @property
-    def slot(self) -> NDArray[np.int32]:
+    def slot(self) -> Ints32:
         """For each cell by its flat index (theta * n_y + y) * n_x + x, shape (n_theta * n_y * n_x,): 1 + its row in `active`,
         0 when it is not active."""
         return self._slot
@@ -112,7 +112,7 @@ class PoseCells:
         self._n = attractor.inhibit_and_normalise(self._cells, self._values, self._n, self._slot, np.float32(0))
         self._find()
 
-    def inject(self, cells: NDArray[np.int32], values: NDArray[np.float32]) -> None:
+    def inject(self, cells: Ints32, values: Singles) -> None:
         """Visual calibration, P <- P + injection. ACRA 2004 eq. 4. It acts with the next `attract`.
 
         cells: flat indices, int32 of shape (k,); values: what they get, float32 of shape (k,), finite and >= 0. A cell named
@@ -190,7 +190,7 @@ class PoseCells:
             self._make_room(room)
         self._swap(m)
 
-    def _put(self, cells: NDArray[np.int32], values: NDArray[np.float32]) -> None:
+    def _put(self, cells: Ints32, values: Singles) -> None:
         """Make these the active cells."""
         kernels.clear(self._cells, self._n, self._slot)
         self._n = len(values)

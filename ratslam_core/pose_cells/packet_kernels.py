@@ -10,6 +10,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from ratslam_core.pose_cells.activity_kernels import THETA, Cells, Shape, Slot, Values, X, Y, cluster, offset
+from ratslam_core.types import Floats, Ints, Ints32
 
 MASS, COS, SIN = 3, 4, 5  # columns after x, y, theta
 ROW = 6
@@ -23,15 +24,15 @@ def find(
     slot: Slot,
     shape: Shape,
     window: int,
-    owner: NDArray[np.int32],
-    peaks: NDArray[np.int32],
+    owner: Ints32,
+    peaks: Ints32,
     bounds: NDArray[np.int8],
-    headings: NDArray[np.float64],
-    old: NDArray[np.float64],
-    old_ids: NDArray[np.int64],
+    headings: Floats,
+    old: Floats,
+    old_ids: Ints,
     n_old: int,
-    new: NDArray[np.float64],
-    new_ids: NDArray[np.int64],
+    new: Floats,
+    new_ids: Ints,
 ) -> tuple[int, int]:
     """The packets in the activity as it is, written to `new`, each with the id of the one that was expected there.
 
@@ -49,13 +50,7 @@ def find(
 
 @njit(cache=True, nogil=True)
 def join_flanks(
-    cells: Cells,
-    values: Values,
-    slot: Slot,
-    shape: Shape,
-    owner: NDArray[np.int32],
-    peaks: NDArray[np.int32],
-    clusters: int,
+    cells: Cells, values: Values, slot: Slot, shape: Shape, owner: Ints32, peaks: Ints32, clusters: int
 ) -> None:
     """A cluster whose strongest cell has a stronger neighbour is a flank of that one's cluster: one packet. `slot` indexes P.
 
@@ -81,11 +76,11 @@ def packet_rows(
     values: Values,
     n: int,
     shape: Shape,
-    owner: NDArray[np.int32],
-    peaks: NDArray[np.int32],
+    owner: Ints32,
+    peaks: Ints32,
     clusters: int,
-    headings: NDArray[np.float64],
-    out: NDArray[np.float64],
+    headings: Floats,
+    out: Floats,
 ) -> int:
     """Write the packets, heaviest first; returns how many. Clusters with the same peak are one. `owner` then names packets.
 
@@ -131,7 +126,7 @@ def packet_rows(
 
 
 @njit(cache=True, nogil=True)
-def _among(number: int, ids: NDArray[np.int64], n: int) -> bool:
+def _among(number: int, ids: Ints, n: int) -> bool:
     for p in range(n):  # noqa: SIM110
         if ids[p] == number:
             return True
@@ -140,14 +135,7 @@ def _among(number: int, ids: NDArray[np.int64], n: int) -> bool:
 
 @njit(cache=True, nogil=True)
 def follow(
-    old: NDArray[np.float64],
-    old_ids: NDArray[np.int64],
-    n_old: int,
-    new: NDArray[np.float64],
-    new_ids: NDArray[np.int64],
-    n_new: int,
-    shape: Shape,
-    window: int,
+    old: Floats, old_ids: Ints, n_old: int, new: Floats, new_ids: Ints, n_new: int, shape: Shape, window: int
 ) -> None:
     """Give packets their ids: each old packet, heaviest first, goes on as the nearest new one. The others get the
     lowest numbers that no packet has. The number of one that has just gone is not used, or it would seem to live on
@@ -174,7 +162,7 @@ def follow(
 
 
 @njit(cache=True, nogil=True)
-def advance(rows: NDArray[np.float64], n: int, shape: Shape, distance: float, yaw: float) -> None:
+def advance(rows: Floats, n: int, shape: Shape, distance: float, yaw: float) -> None:
     """Move the rows of packets to where `shift` takes their activity. distance: cells; yaw: layers."""
     for p in range(n):
         row = rows[p]

@@ -9,11 +9,10 @@ import math
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
 from disk import kind
 from ratslam_core.params import ExperienceMapParams
-from ratslam_core.types import Packet, Pose2
+from ratslam_core.types import Floats, Ints, Ints32, Packet, Pose2
 
 BUCKET = 4  # cells and layers along a side
 
@@ -89,7 +88,7 @@ class Experiences:
             math.remainder(theta - own_theta, n_theta),
         )
 
-    def of_view(self, view: int) -> NDArray[np.int64]:
+    def of_view(self, view: int) -> Ints:
         """The experiences of a view, the newest first."""
         return _chain(self._newest_of_view.get(view, -1), self._before_of_view)
 
@@ -145,7 +144,7 @@ def _energy(
     x: float,
     y: float,
     theta: float,
-    at: NDArray[np.float64],
+    at: Floats,
     i: int,
     n_theta: int,
     n_y: int,
@@ -162,7 +161,7 @@ def _energy(
 
 
 @njit(cache=True, nogil=True)
-def _chain(newest: int, before: NDArray[np.int64]) -> NDArray[np.int64]:
+def _chain(newest: int, before: Ints) -> Ints:
     """All members of a chain, the newest first."""
     count, i = 0, newest
     while i >= 0:
@@ -178,8 +177,8 @@ def _chain(newest: int, before: NDArray[np.int64]) -> NDArray[np.int64]:
 @njit(cache=True, nogil=True)
 def _best_in_chain(
     newest: int,
-    before: NDArray[np.int64],
-    at: NDArray[np.float64],
+    before: Ints,
+    at: Floats,
     x: float,
     y: float,
     theta: float,
@@ -191,11 +190,11 @@ def _best_in_chain(
     old: bool,
     best: int,
     most: float,
-    pose: NDArray[np.float64],
+    pose: Floats,
     near_x: float,
     near_y: float,
     near: float,
-    submaps: NDArray[np.int32],
+    submaps: Ints32,
     submap: int,
 ) -> tuple[int, float]:
     i = newest
@@ -211,9 +210,9 @@ def _best_in_chain(
 
 @njit(cache=True, nogil=True)
 def _best_in_buckets(
-    newest: NDArray[np.int64],
-    before: NDArray[np.int64],
-    at: NDArray[np.float64],
+    newest: Ints,
+    before: Ints,
+    at: Floats,
     x: float,
     y: float,
     theta: float,
@@ -223,8 +222,8 @@ def _best_in_buckets(
     zone_xy: float,
     zone_theta: float,
     most: float,
-    pose: NDArray[np.float64],
-    submaps: NDArray[np.int32],
+    pose: Floats,
+    submaps: Ints32,
 ) -> int:
     """The best experience in the buckets that the zone touches."""
     best = -1
@@ -258,7 +257,7 @@ def _buckets(middle: float, reach: float, n: int, buckets: int) -> tuple[int, in
 
 @njit(cache=True, nogil=True)
 def _best_of_all(
-    at: NDArray[np.float64],
+    at: Floats,
     x: float,
     y: float,
     theta: float,

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from ratslam_core.params import ExperienceMapParams
 from ratslam_core.pose_graph.experiences import Experiences
 from ratslam_core.pose_graph.transitions import Link, Transitions
-from ratslam_core.types import Packet, Pose2, pose_of
+from ratslam_core.types import Floats, Ints, Ints32, Packet, Pose2, pose_of
 
 STEP_SIGMA = 0.04  # cells: error of odometry over one step, the least that a link is taken to have
 TURN_CELLS = 0.175  # rad a cell: an error in heading that counts as much as an error of a cell
@@ -45,22 +45,22 @@ class PoseGraph:
     # ------------------------------------------------------------ experiences
 
     @property
-    def poses(self) -> NDArray[np.float64]:
+    def poses(self) -> Floats:
         """x, y (m), heading (rad) of every experience in the map, shape (n, 3). A view."""
         return self._experiences.pose[: self._experiences.count]
 
     @property
-    def cell_states(self) -> NDArray[np.float64]:
+    def cell_states(self) -> Floats:
         """x', y' (cells), theta' (layers) of every experience, shape (n, 3). A view."""
         return self._experiences.at[: self._experiences.count]
 
     @property
-    def views(self) -> NDArray[np.int64]:
+    def views(self) -> Ints:
         """The scene of every experience, -1 for nothing to see, shape (n,). A view."""
         return self._experiences.view[: self._experiences.count]
 
     @property
-    def submap_of(self) -> NDArray[np.int32]:
+    def submap_of(self) -> Ints32:
         """The number of the submap that each experience lies on, shape (n,): extensions/submaps.py. A view."""
         return self._experiences.submap[: self._experiences.count]
 
@@ -92,12 +92,12 @@ class PoseGraph:
         return len(self.transitions.row_of)
 
     @property
-    def links(self) -> NDArray[np.int64]:
+    def links(self) -> Ints:
         """From and to of every link, shape (m, 2)."""
         return self.transitions.ends[self._travelled]
 
     @property
-    def moves(self) -> NDArray[np.float64]:
+    def moves(self) -> Floats:
         """dx, dy (m) in the frame of the first experience and change of facing (rad) of every link, shape (m, 3)."""
         return self.transitions.move[self._travelled]
 
@@ -107,12 +107,12 @@ class PoseGraph:
         return self.transitions.behaviour[self._travelled]
 
     @property
-    def confidences(self) -> NDArray[np.float64]:
+    def confidences(self) -> Floats:
         """c_ij of every link, shape (m,). ACRA 2006 eq. 9."""
         return self.transitions.confidence[self._travelled]
 
     @property
-    def link_times(self) -> NDArray[np.float64]:
+    def link_times(self) -> Floats:
         """Seconds that each transition takes, shape (m,).
 
         [ours] Never less than its length in the map takes at the robot's average pace. From the edge of one zone into
@@ -151,7 +151,7 @@ class PoseGraph:
         return tuple(self.transitions.dropped)
 
     @property
-    def _travelled(self) -> NDArray[np.int64]:
+    def _travelled(self) -> Ints:
         return np.flatnonzero(self.transitions.travelled[: self.transitions.count])
 
 
@@ -163,9 +163,7 @@ def wrapped(angle: float) -> float:
 
 
 @njit(cache=True, nogil=True)
-def disagreement(
-    poses: NDArray[np.float64], links: NDArray[np.int64], moves: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def disagreement(poses: Floats, links: Ints, moves: Floats) -> Floats:
     """Where each link says its end is, minus where the map has it: dx, dy (m) in the map's frame, angle (rad), shape (m, 3)."""
     out = np.empty((len(links), 3))
     for row in range(len(links)):

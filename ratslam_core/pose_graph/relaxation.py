@@ -13,6 +13,7 @@ from disk import kind
 from ratslam_core.pose_graph.pose_graph import PoseGraph, disagreement, wrapped
 from ratslam_core.pose_graph.transitions import Adjacency
 from ratslam_core.solvers.laplacian import eliminate
+from ratslam_core.types import Flags, Floats, Ints, Uints
 
 DIVERGED = 10.0  # times the length of all links together: where no map that fits them puts an experience
 LARGEST = 4000  # experiences in a densely linked core; a map with more is left to the sweeps: 4,000 take 2 s and 250 MB
@@ -40,13 +41,7 @@ class Relaxation:
                 sweep(poses, t.graph, moves, t.believed, p.correction)
 
 
-def sweep(
-    poses: NDArray[np.float64],
-    graph: Adjacency,
-    moves: NDArray[np.float64],
-    weights: NDArray[np.float64],
-    alpha: float,
-) -> None:
+def sweep(poses: Floats, graph: Adjacency, moves: Floats, weights: Floats, alpha: float) -> None:
     """One sweep, in place: each experience but the first is moved by 2 alpha times the weighted mean residual of its links.
 
     Experiences are moved one after the other (Gauss-Seidel), place and heading together; places use the headings from
@@ -57,14 +52,7 @@ def sweep(
 
 @njit(cache=True, nogil=True)
 def _sweep(
-    poses: NDArray[np.float64],
-    start: NDArray[np.uint32],
-    used: NDArray[np.uint32],
-    halves: NDArray[np.uint32],
-    others: NDArray[np.uint32],
-    moves: NDArray[np.float64],
-    weights: NDArray[np.float64],
-    gain: float,
+    poses: Floats, start: Uints, used: Uints, halves: Uints, others: Uints, moves: Floats, weights: Floats, gain: float
 ) -> None:
     """dx_i, dy_i, dth_i = gain times the weighted sum of the links' residuals over the sum of the weights. B eqs. 12-14."""
     n, one = np.uint64(poses.shape[0]), np.uint64(1)
@@ -90,14 +78,7 @@ def _sweep(
             poses[i, 2] = wrapped(heading + share * turn)
 
 
-def sweep_by_link(
-    poses: NDArray[np.float64],
-    graph: Adjacency,
-    links: NDArray[np.int64],
-    moves: NDArray[np.float64],
-    travelled: NDArray[np.bool_],
-    alpha: float,
-) -> None:
+def sweep_by_link(poses: Floats, graph: Adjacency, links: Ints, moves: Floats, travelled: Flags, alpha: float) -> None:
     """One sweep, in place: each experience but the first is moved by alpha times the residual of each of its links in turn.
 
     ACRA 2005 eqs. 12-14 may also be read as all links at once: `sweep_all_at_once`. Places use the headings from before
@@ -110,14 +91,14 @@ def sweep_by_link(
 
 @njit(cache=True, nogil=True)
 def _sweep_by_link(
-    poses: NDArray[np.float64],
-    start: NDArray[np.uint32],
-    used: NDArray[np.uint32],
-    halves: NDArray[np.uint32],
-    others: NDArray[np.uint32],
+    poses: Floats,
+    start: Uints,
+    used: Uints,
+    halves: Uints,
+    others: Uints,
     ends: NDArray[np.uint64],
-    moves: NDArray[np.float64],
-    travelled: NDArray[np.bool_],
+    moves: Floats,
+    travelled: Flags,
     alpha: float,
 ) -> None:
     turned = _turned(poses, ends, moves)
@@ -134,9 +115,7 @@ def _sweep_by_link(
                 poses[i, 2] = wrapped(poses[i, 2] + alpha * turn)
 
 
-def sweep_all_at_once(
-    poses: NDArray[np.float64], links: NDArray[np.int64], moves: NDArray[np.float64], alpha: float
-) -> None:
+def sweep_all_at_once(poses: Floats, links: Ints, moves: Floats, alpha: float) -> None:
     """One sweep as ACRA 2005 eqs. 12-14 print it, in place: all experiences but the first are moved at once, each by alpha
     times the sum of the residuals of its links.
 
@@ -153,17 +132,17 @@ def sweep_all_at_once(
         poses[:] = swept
 
 
-def has_diverged(poses: NDArray[np.float64], moves: NDArray[np.float64]) -> bool:
+def has_diverged(poses: Floats, moves: Floats) -> bool:
     """Whether an experience lies farther from the first than DIVERGED times the length of all links together."""
     return _reach(poses) > DIVERGED * float(np.hypot(moves[:, 0], moves[:, 1]).sum())
 
 
-def _reach(poses: NDArray[np.float64]) -> float:
+def _reach(poses: Floats) -> float:
     return float(np.hypot(*(poses[:, :2] - poses[:1, :2]).T).max(initial=0.0))
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _turned(poses: NDArray[np.float64], ends: NDArray[np.uint64], moves: NDArray[np.float64]) -> NDArray[np.float64]:
+def _turned(poses: Floats, ends: NDArray[np.uint64], moves: Floats) -> Floats:
     """Moves in the map's frame: (dx, dy) of each row turned by the heading of where it begins."""
     c, s = _facings(poses)
     m = np.uint64(moves.shape[0])
@@ -176,7 +155,7 @@ def _turned(poses: NDArray[np.float64], ends: NDArray[np.uint64], moves: NDArray
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _facings(poses: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _facings(poses: Floats) -> tuple[Floats, Floats]:
     """Cosine and sine of every heading."""
     n = np.uint64(poses.shape[0])
     c, s = np.empty(n), np.empty(n)
@@ -209,11 +188,11 @@ class Solution(NamedTuple):
 
 
 def solve(
-    poses: NDArray[np.float64],
-    links: NDArray[np.int64],
-    moves: NDArray[np.float64],
-    weights: NDArray[np.float64],
-    turning_s: NDArray[np.float64] | None = None,
+    poses: Floats,
+    links: Ints,
+    moves: Floats,
+    weights: Floats,
+    turning_s: Floats | None = None,
     known: float = 0.0,
     doubt: float = 0.0,
     *,
@@ -240,7 +219,7 @@ def solve(
     strength = float(np.sum(weights * seconds * unexplained))
     bias = 0.0
     for _ in range(rounds):
-        error: NDArray[np.float64] = poses[i, 2] + moves[:, 2] - bias * seconds - poses[j, 2]
+        error: Floats = poses[i, 2] + moves[:, 2] - bias * seconds - poses[j, 2]
         error -= 2 * math.pi * np.round(error / (2 * math.pi))
         shown = float(np.sum(weights * unexplained * error)) - doubt * (known + bias)
         more = shown / (strength + doubt) if strength > LEAST_STRENGTH else 0.0
@@ -254,7 +233,7 @@ def solve(
 
 
 @njit(cache=True, nogil=True)
-def _asked(n: int, links: NDArray[np.int64], errors: NDArray[np.float64]) -> NDArray[np.float64]:
+def _asked(n: int, links: Ints, errors: Floats) -> Floats:
     """How far the links ask each experience to move, in sum: each moves its end by its error, its beginning by minus that."""
     asked = np.zeros(n)
     for row in range(len(links)):

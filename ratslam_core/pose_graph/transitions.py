@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from disk import kind
 from ratslam_core.params import ExperienceMapParams
-from ratslam_core.types import IDENTITY, Odometry, Pose2, pose_of, wrap_angle
+from ratslam_core.types import IDENTITY, Flags, Floats, Ints, Odometry, Pose2, Uints, pose_of, wrap_angle
 
 BEHAVIOURS = 16
 ROOM = 4  # half-edges that a new node has room for
@@ -81,7 +81,7 @@ class Transitions:
         self.count += 1
         return self.count - 1
 
-    def measure(self, row: int, move: Pose2, weight: float, old: NDArray[np.float64], old_weight: float) -> None:
+    def measure(self, row: int, move: Pose2, weight: float, old: Floats, old_weight: float) -> None:
         """Average a passage into the row as it was before, each by its weight. ACRA 2006 eq. 6."""
         share = weight / (old_weight + weight)
         turn = old[2] + share * wrap_angle(move.heading_rad - old[2])
@@ -95,12 +95,12 @@ class Transitions:
         self.turning_s[row] += (turning_s - self.turning_s[row]) / (n + 1)
         self.passages[row] = n + 1
 
-    def seconds(self, poses: NDArray[np.float64], pace: float) -> NDArray[np.float64]:
+    def seconds(self, poses: Floats, pace: float) -> Floats:
         """Seconds of each row, shape (count,): its time, or if longer its length at this pace (s/m); inf for no way."""
         rows = slice(self.count)
         return _seconds(self.ends[rows], self.time_s[rows], self.travelled[rows], poses, pace)
 
-    def departures(self, i: int, behaviour: int) -> NDArray[np.int64]:
+    def departures(self, i: int, behaviour: int) -> Ints:
         """Rows of the links from i that were learnt under this behaviour."""
         rows = slice(self.count)
         own = (self.ends[rows, 0] == i) & (self.behaviour[rows] == behaviour) & self.travelled[rows]
@@ -144,13 +144,7 @@ class Transitions:
 
 
 @njit(cache=True, nogil=True)
-def _seconds(
-    ends: NDArray[np.int64],
-    time_s: NDArray[np.float64],
-    travelled: NDArray[np.bool_],
-    poses: NDArray[np.float64],
-    pace: float,
-) -> NDArray[np.float64]:
+def _seconds(ends: Ints, time_s: Floats, travelled: Flags, poses: Floats, pace: float) -> Floats:
     seconds = np.full(len(ends), np.inf)
     for row in range(len(ends)):
         if travelled[row]:
@@ -259,7 +253,7 @@ class Adjacency:
         """How many half-edges there are at a node."""
         return int(self.used[node])
 
-    def at(self, node: int) -> tuple[NDArray[np.uint32], NDArray[np.uint32]]:
+    def at(self, node: int) -> tuple[Uints, Uints]:
         """Half-edges at a node and the nodes at their other ends, in the order of creation. Views."""
         block = slice(int(self.start[node]), int(self.start[node]) + int(self.used[node]))
         return self.half[block], self.other[block]

@@ -14,23 +14,20 @@ from typing import Any, TypeAlias
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
+
+from ratslam_core.types import Floats, Ints, Ints32, Uints
 
 # start, used, half, other of an `Adjacency`, and the seconds of each row, inf for no way
-Links: TypeAlias = tuple[
-    NDArray[np.uint32], NDArray[np.uint32], NDArray[np.uint32], NDArray[np.uint32], NDArray[np.float64]
-]
+Links: TypeAlias = tuple[Uints, Uints, Uints, Uints, Floats]
 # poses, reach (m, 0 = no shortcuts), pace (s/m), and the grid of `buckets`
-Near: TypeAlias = tuple[NDArray[np.float64], float, float, NDArray[np.int32], NDArray[np.int32]]
-Heap: TypeAlias = tuple[NDArray[np.float64], NDArray[np.uint32]]  # times, the least first, and the node of each
+Near: TypeAlias = tuple[Floats, float, float, Ints32, Ints32]
+Heap: TypeAlias = tuple[Floats, Uints]  # times, the least first, and the node of each
 Whole: TypeAlias = int | np.integer[Any]
 LEAST_S = 1e-3  # no link takes less, so that no way leads round in circles
 
 
 @njit(cache=True, nogil=True)
-def fresh(
-    goals: NDArray[np.int64], times: NDArray[np.float64], parent: NDArray[np.int32], links: Links, near: Near
-) -> None:
+def fresh(goals: Ints, times: Floats, parent: Ints32, links: Links, near: Near) -> None:
     """Write the seconds from every node to its nearest goal to `times`, inf for no way, and the next node or -1 to
     `parent`. All goals are in the heap from the start, so that many cost as much as one."""
     times[:] = np.inf
@@ -43,9 +40,7 @@ def fresh(
 
 
 @njit(cache=True, nogil=True)
-def mend(
-    goals: NDArray[np.int64], times: NDArray[np.float64], parent: NDArray[np.int32], links: Links, near: Near
-) -> None:
+def mend(goals: Ints, times: Floats, parent: Ints32, links: Links, near: Near) -> None:
     """The same, beginning with an older tree in `parent`, however links and times have changed since.
 
     First come the times along what is left of the old tree: none is too short. Then every shorter way is followed up.
@@ -79,7 +74,7 @@ def mend(
 
 
 @njit(cache=True, nogil=True, inline="always")
-def _offers(node: Whole, times: NDArray[np.float64], links: Links, near: Near) -> bool:
+def _offers(node: Whole, times: Floats, links: Links, near: Near) -> bool:
     """Whether a neighbour would be nearer by way of this node."""
     start, used, halves, others, seconds = links
     begin = np.uint64(start[node])
@@ -98,9 +93,7 @@ def _offers(node: Whole, times: NDArray[np.float64], links: Links, near: Near) -
 
 
 @njit(cache=True, nogil=True)
-def _settle(
-    size: Whole, heap: Heap, times: NDArray[np.float64], parent: NDArray[np.int32], links: Links, near: Near
-) -> None:
+def _settle(size: Whole, heap: Heap, times: Floats, parent: Ints32, links: Links, near: Near) -> None:
     """t_j <- min(t_j, t_i + t_ij) for all neighbours j of the nearest node i, until none is left. ACRA 2006 eqs. 10-12."""
     start, used, halves, others, seconds = links
     poses, reach, _, heads, following = near
@@ -134,7 +127,7 @@ def _settle(
 
 
 @njit(cache=True, nogil=True)
-def trace(start: int, times: NDArray[np.float64], links: Links, near: Near) -> NDArray[np.int64]:
+def trace(start: int, times: Floats, links: Links, near: Near) -> Ints:
     """Nodes of the quickest way to a goal, where the time is 0; among equal ways, the one whose next node has the lowest
     number."""
     path: list[Whole] = [start]
@@ -178,7 +171,7 @@ def _between(a: Whole, b: Whole, links: Links, near: Near) -> float:
 
 
 @njit(cache=True, nogil=True)
-def buckets(poses: NDArray[np.float64], reach: float) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
+def buckets(poses: Floats, reach: float) -> tuple[Ints32, Ints32]:
     """A grid of cells as wide as the reach, hashed: the first node of each bucket, and the one after each node."""
     size = 16
     while size < len(poses):

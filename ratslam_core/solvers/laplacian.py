@@ -13,7 +13,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
+
+from ratslam_core.types import Floats, Ints, Uints
 
 SPARE = 2  # neighbours that a node has room for at first, in addition to its own
 DENSE = 8  # the rest is dense when each of its nodes is linked to an eighth of it or more
@@ -21,9 +22,7 @@ DENSE_IS_QUICKER = 100  # how many times quicker a product in a dense matrix is 
 BLOCK = 32  # columns of a dense matrix that are eliminated together
 
 
-def eliminate(
-    n: int, links: NDArray[np.int64], weights: NDArray[np.float64], largest: int = 4000
-) -> Elimination | None:
+def eliminate(n: int, links: Ints, weights: Floats, largest: int = 4000) -> Elimination | None:
     """Eliminate the nodes. links: (m, 2) nodes from 0 to n - 1; weights: (m,), 0 or more; links that repeat add up.
 
     None when the net is so entangled that a rest of more than `largest` nodes is left.
@@ -45,17 +44,17 @@ def eliminate(
 class Elimination(NamedTuple):
     """A net of n nodes, eliminated: `start[v]` to `start[v] + used[v]` are v's neighbours when it was eliminated."""
 
-    order: NDArray[np.int64]  # the eliminated nodes, in order; node 0 is fixed and not among them
-    start: NDArray[np.int64]
-    used: NDArray[np.int64]
-    other: NDArray[np.uint32]  # unsigned: compiled code need not test for negative indices
-    weight: NDArray[np.float64]
-    total: NDArray[np.float64]  # (n,) sum of the weights, 0 for a node without links
-    rest: NDArray[np.int64]  # (k,) nodes of the dense rest
-    triangle: NDArray[np.float64]  # (k, k) Cholesky's factor of their matrix
+    order: Ints  # the eliminated nodes, in order; node 0 is fixed and not among them
+    start: Ints
+    used: Ints
+    other: Uints  # unsigned: compiled code need not test for negative indices
+    weight: Floats
+    total: Floats  # (n,) sum of the weights, 0 for a node without links
+    rest: Ints  # (k,) nodes of the dense rest
+    triangle: Floats  # (k, k) Cholesky's factor of their matrix
     work: int  # how many products of weights it took, or what took as long
 
-    def solve(self, asked: NDArray[np.float64]) -> NDArray[np.float64]:
+    def solve(self, asked: Floats) -> Floats:
         """x with sum over the links w (x_i - x_j) = asked_i at each node i but the first, whose x is 0; shape (n,) or (n, k).
 
         There is no such x for nodes that are not connected to the first by links.
@@ -66,8 +65,8 @@ class Elimination(NamedTuple):
 
 
 @njit(cache=True, nogil=True)
-def _eliminate(n: int, links: NDArray[np.int64], weights: NDArray[np.float64], dense: int) -> tuple[Any, ...]:
-    other: NDArray[np.uint32]
+def _eliminate(n: int, links: Ints, weights: Floats, dense: int) -> tuple[Any, ...]:
+    other: Uints
     start, room, used, other, weight, end = _net(n, links, weights)
     where = np.zeros(n, np.uint32)
     first, after, before = np.full(n + 1, -1), np.full(n, -1), np.full(n, -1)  # nodes by how many neighbours they have
@@ -114,9 +113,7 @@ def _eliminate(n: int, links: NDArray[np.int64], weights: NDArray[np.float64], d
 
 
 @njit(cache=True, nogil=True)
-def _net(
-    n: int, links: NDArray[np.int64], weights: NDArray[np.float64]
-) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64], NDArray[np.uint32], NDArray[np.float64], int]:
+def _net(n: int, links: Ints, weights: Floats) -> tuple[Ints, Ints, Ints, Uints, Floats, int]:
     """Each node's neighbours in one arena: start, room and use of each block, neighbours, weights; and the arena's end."""
     start, room = np.zeros(n, np.int64), np.full(n, SPARE)
     for row in range(len(links)):
@@ -137,15 +134,7 @@ def _net(
 
 
 @njit(cache=True, nogil=True)
-def _join(
-    i: int,
-    j: int,
-    more: float,
-    start: NDArray[np.int64],
-    used: NDArray[np.int64],
-    other: NDArray[np.uint32],
-    weight: NDArray[np.float64],
-) -> None:
+def _join(i: int, j: int, more: float, start: Ints, used: Ints, other: Uints, weight: Floats) -> None:
     """Make j a neighbour of i, or add to the weight between them."""
     for q in range(start[i], start[i] + used[i]):
         if other[q] == j:
@@ -156,14 +145,7 @@ def _join(
 
 
 @njit(cache=True, nogil=True)
-def _leave(
-    i: int,
-    j: int,
-    start: NDArray[np.int64],
-    used: NDArray[np.int64],
-    other: NDArray[np.uint32],
-    weight: NDArray[np.float64],
-) -> None:
+def _leave(i: int, j: int, start: Ints, used: Ints, other: Uints, weight: Floats) -> None:
     """Remove j from the neighbours of i."""
     q, last = start[i], start[i] + used[i] - 1
     while other[q] != j:
@@ -174,14 +156,7 @@ def _leave(
 
 @njit(cache=True, nogil=True)
 def _meet(
-    a: int,
-    others: NDArray[np.uint32],
-    parts: NDArray[np.float64],
-    share: float,
-    own: NDArray[np.uint32],
-    own_weight: NDArray[np.float64],
-    count: int,
-    where: NDArray[np.uint32],
+    a: int, others: Uints, parts: Floats, share: float, own: Uints, own_weight: Floats, count: int, where: Uints
 ) -> int:
     """Make these others neighbours of a, too, with this share of their weights; returns how many neighbours a has now."""
     for q in range(count):
@@ -200,7 +175,7 @@ def _meet(
 
 
 @njit(cache=True, nogil=True)
-def _put(v: int, count: int, first: NDArray[np.int64], after: NDArray[np.int64], before: NDArray[np.int64]) -> None:
+def _put(v: int, count: int, first: Ints, after: Ints, before: Ints) -> None:
     """Add v to the list of nodes with this many neighbours."""
     after[v], before[v] = first[count], -1
     if after[v] >= 0:
@@ -209,7 +184,7 @@ def _put(v: int, count: int, first: NDArray[np.int64], after: NDArray[np.int64],
 
 
 @njit(cache=True, nogil=True)
-def _take(v: int, count: int, first: NDArray[np.int64], after: NDArray[np.int64], before: NDArray[np.int64]) -> None:
+def _take(v: int, count: int, first: Ints, after: Ints, before: Ints) -> None:
     if before[v] >= 0:
         after[before[v]] = after[v]
     else:
@@ -219,14 +194,7 @@ def _take(v: int, count: int, first: NDArray[np.int64], after: NDArray[np.int64]
 
 
 @njit(cache=True, nogil=True)
-def _matrix(
-    n: int,
-    rest: NDArray[np.int64],
-    start: NDArray[np.int64],
-    used: NDArray[np.int64],
-    other: NDArray[np.uint32],
-    weight: NDArray[np.float64],
-) -> NDArray[np.float64]:
+def _matrix(n: int, rest: Ints, start: Ints, used: Ints, other: Uints, weight: Floats) -> Floats:
     at = np.full(n, -1)
     for k in range(len(rest)):
         at[rest[k]] = k
@@ -240,7 +208,7 @@ def _matrix(
 
 
 @njit(cache=True, nogil=True)
-def factor(matrix: NDArray[np.float64]) -> bool:
+def factor(matrix: Floats) -> bool:
     """Cholesky's factor, block by block: the lower triangle becomes L with L L^T = matrix; False when a pivot is not positive.
 
     A library's factor would be twice as quick, but its last digits depend on how many cores there are.
@@ -265,7 +233,7 @@ def factor(matrix: NDArray[np.float64]) -> bool:
 
 
 @njit(cache=True, nogil=True)
-def _factor_columns(matrix: NDArray[np.float64], first: int, end: int) -> bool:
+def _factor_columns(matrix: Floats, first: int, end: int) -> bool:
     """Columns `first` to `end` of L, row by row, since a row lies together in memory and a column does not."""
     roots, across = np.empty(BLOCK), np.empty((BLOCK, BLOCK))  # of the block on the diagonal; across: its transpose
     for i in range(first, len(matrix)):
@@ -286,15 +254,15 @@ def _factor_columns(matrix: NDArray[np.float64], first: int, end: int) -> bool:
 
 @njit(cache=True, nogil=True)
 def _solve(
-    order: NDArray[np.int64],
-    start: NDArray[np.int64],
-    used: NDArray[np.int64],
-    other: NDArray[np.uint32],
-    weight: NDArray[np.float64],
-    total: NDArray[np.float64],
-    rest: NDArray[np.int64],
-    triangle: NDArray[np.float64],
-    out: NDArray[np.float64],
+    order: Ints,
+    start: Ints,
+    used: Ints,
+    other: Uints,
+    weight: Floats,
+    total: Floats,
+    rest: Ints,
+    triangle: Floats,
+    out: Floats,
 ) -> None:
     for v in order:  # a node's right-hand side goes to the neighbours that it had when it was eliminated
         for q in range(start[v], start[v] + used[v]):
@@ -312,7 +280,7 @@ def _solve(
 
 
 @njit(cache=True, nogil=True)
-def _solve_rows(triangle: NDArray[np.float64], rows: NDArray[np.int64], out: NDArray[np.float64]) -> None:
+def _solve_rows(triangle: Floats, rows: Ints, out: Floats) -> None:
     """Solve L L^T x = b in place: each column of b is in these rows of `out`, and x takes its place.
 
     triangle: (k, k), L; rows: (k,).

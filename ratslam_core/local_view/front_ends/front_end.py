@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from ratslam_core.local_view.matcher import Features
 from ratslam_core.params import COLUMNS, ROWS
+from ratslam_core.types import Bytes
 
 
 class FrontEnd(Protocol):
@@ -29,11 +30,7 @@ class FrontEnd(Protocol):
     echo_weight: float = 0.0  # of their mean difference against that of the columns
 
     def look(
-        self,
-        image: NDArray[np.uint8] | None,
-        scene: int | None = None,
-        ranges_m: NDArray[np.floating] | None = None,
-        /,
+        self, image: Bytes | None, scene: int | None = None, ranges_m: NDArray[np.floating] | None = None, /
     ) -> Features:
         """The features of what is sensed now; ValueError says what is wrong with it."""
         ...
@@ -46,7 +43,7 @@ class FrontEnd(Protocol):
         """Levels that are added to every difference, since the features tell little."""
         return 0.0
 
-    def picture(self, features: Features, /) -> NDArray[np.uint8]:
+    def picture(self, features: Features, /) -> Bytes:
         """The features as a picture for people: (h, w) grey or (h, w, 3) RGB."""
         ...
 
@@ -55,18 +52,18 @@ class FrontEnd(Protocol):
         ...
 
 
-def grey(image: NDArray[np.uint8] | None) -> NDArray[np.uint8]:
+def grey(image: Bytes | None) -> Bytes:
     """Its luminance, shape (h, w)."""
     good = checked(image)
     return np.asarray(cv2.cvtColor(good, cv2.COLOR_RGB2GRAY), np.uint8) if good.ndim == 3 else good
 
 
-def grey_template(image: NDArray[np.uint8] | None) -> NDArray[np.uint8]:
+def grey_template(image: Bytes | None) -> Bytes:
     """An image as 12 x 8 grey levels, shape (8, 12), each the mean of its area."""
     return np.asarray(cv2.resize(grey(image), (COLUMNS, ROWS), interpolation=cv2.INTER_AREA), np.uint8)
 
 
-def checked(image: NDArray[np.uint8] | None) -> NDArray[np.uint8]:
+def checked(image: Bytes | None) -> Bytes:
     """The image, or a ValueError that says what it should be: uint8, (h, w) grey or (h, w, 3) RGB, 8 x 12 pixels at least."""
     if not isinstance(image, np.ndarray) or image.dtype != np.uint8:
         raise ValueError(f"image must be an array of uint8, got {getattr(image, 'dtype', type(image).__name__)}")

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from disk import kind
 from ratslam_core.local_view.front_ends.front_end import FrontEnd, grey_template
 from ratslam_core.local_view.matcher import COLUMNS, ROWS, SIZE, Features
+from ratslam_core.types import Bytes, Floats, Singles
 
 ECHOES = 8
 GAIN = 90.0  # bytes for a brightness that is e times as large
@@ -47,10 +48,7 @@ class ImageAndSonars(FrontEnd):
     echoes, echo_weight = ECHOES, ECHO_WEIGHT
 
     def look(
-        self,
-        image: NDArray[np.uint8] | None,
-        _scene: int | None = None,
-        ranges_m: NDArray[np.floating] | None = None,
+        self, image: Bytes | None, _scene: int | None = None, ranges_m: NDArray[np.floating] | None = None
     ) -> Features:
         features = np.zeros(SIZE + ECHOES, np.uint8)
         _picture_bytes(grey_template(image), LEVELS, EVEN, features)
@@ -69,7 +67,7 @@ class ImageAndSonars(FrontEnd):
         """
         return _doubt(features)
 
-    def picture(self, features: Features) -> NDArray[np.uint8]:
+    def picture(self, features: Features) -> Bytes:
         """The levels; below them a strip with the echoes from left to right, the nearer the brighter."""
         near = np.where(features[SIZE:] == 0, 0, 255 - features[SIZE:].astype(np.int64))
         strip = near[np.arange(COLUMNS) * ECHOES // COLUMNS].astype(np.uint8)
@@ -81,7 +79,7 @@ class ImageAndSonars(FrontEnd):
 
 
 @njit(cache=True, nogil=True)
-def _picture_bytes(grey: NDArray[np.uint8], levels: NDArray[np.float32], even: float, out: Features) -> None:
+def _picture_bytes(grey: Bytes, levels: Singles, even: float, out: Features) -> None:
     """Column after column; `even` is the share of a column's mean that is taken off."""
     rows, columns = grey.shape
     middle = levels[int(MIDDLE)]
@@ -96,7 +94,7 @@ def _picture_bytes(grey: NDArray[np.uint8], levels: NDArray[np.float32], even: f
 
 
 @njit(cache=True, nogil=True)
-def _echo_bytes(ranges_m: NDArray[np.float64], least_m: float, most_m: float, out: Features) -> None:
+def _echo_bytes(ranges_m: Floats, least_m: float, most_m: float, out: Features) -> None:
     """1 for the nearest and 255 for none within reach. Of more than 8 sonars, the nearest of each group counts."""
     n = len(ranges_m)
     groups = min(n, ECHOES)
@@ -147,7 +145,7 @@ class LimitedLevels(FrontEnd):
     columns, rows = COLUMNS, ROWS
     shifts, scale, threshold, surprise, vague = True, 1.0, 7.0, 9.5, 0.0
 
-    def look(self, image: NDArray[np.uint8] | None, _scene: int | None = None, _ranges_m: object = None) -> Features:
+    def look(self, image: Bytes | None, _scene: int | None = None, _ranges_m: object = None) -> Features:
         levels = LEVELS[grey_template(image)]
         column, middle = levels.mean(axis=0), LEVELS[int(MIDDLE)]
         off = levels - EVEN * column - (1 - EVEN) * middle
@@ -157,7 +155,7 @@ class LimitedLevels(FrontEnd):
         """A wall at arm's length looks the same to either side."""
         return along_rows(features) < LEAST_PATTERN
 
-    def picture(self, features: Features) -> NDArray[np.uint8]:
+    def picture(self, features: Features) -> Bytes:
         return features.reshape(COLUMNS, ROWS).T
 
     def words(self, features: Features) -> str:

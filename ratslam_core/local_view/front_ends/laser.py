@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from disk import kind
 from ratslam_core.local_view.front_ends.front_end import FrontEnd
 from ratslam_core.local_view.matcher import Features
+from ratslam_core.types import Bytes
 
 LASER_COLUMNS = 60
 LEAST_M, MOST_M = 0.3, 20.0  # nearer and farther ranges count as these; a range twice as long is 42 bytes more
@@ -42,7 +43,7 @@ class Laser(FrontEnd):
         """A hall without walls within reach."""
         return float((features < 255).mean()) < BLAND
 
-    def picture(self, features: Features) -> NDArray[np.uint8]:
+    def picture(self, features: Features) -> Bytes:
         """The nearer, the brighter, from left to right."""
         return np.tile(255 - features, (8, 1))
 

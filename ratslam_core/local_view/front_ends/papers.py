@@ -10,11 +10,11 @@ import numbers
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
 from disk import kind
 from ratslam_core.local_view.front_ends.front_end import FrontEnd, checked, grey, grey_template
 from ratslam_core.local_view.matcher import COLUMNS, ROWS, SIZE, Features
+from ratslam_core.types import Bytes, Floats, Singles
 
 
 @kind("template/2")
@@ -27,10 +27,10 @@ class Template(FrontEnd):
     columns, rows = COLUMNS, ROWS
     shifts, scale, threshold, surprise, vague = True, 1.0, 6.0, 20.0, 0.0
 
-    def look(self, image: NDArray[np.uint8] | None, _scene: int | None = None, _ranges_m: object = None) -> Features:
+    def look(self, image: Bytes | None, _scene: int | None = None, _ranges_m: object = None) -> Features:
         return np.ascontiguousarray(grey_template(image).T).ravel()
 
-    def picture(self, features: Features) -> NDArray[np.uint8]:
+    def picture(self, features: Features) -> Bytes:
         return features.reshape(COLUMNS, ROWS).T
 
     def words(self, features: Features) -> str:
@@ -46,7 +46,7 @@ GAIN = 600.0  # levels of an edge as strong as the brightness around it
 GLYPH = 9  # pixels of the small picture that stands for one place
 
 
-def gabor_pair(across_rad: float) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+def gabor_pair(across_rad: float) -> tuple[Singles, Singles]:
     """Even and odd Gabor filter, blind to brightness; `across_rad` is the direction across the edge, 0 = to the right."""
     y, x = np.mgrid[-REACH : REACH + 1, -REACH : REACH + 1].astype(np.float64)
     envelope = np.exp(-(x**2 + y**2) / (2 * SIGMA**2))
@@ -69,7 +69,7 @@ class ComplexCells(FrontEnd):
     columns, rows = COLUMNS, ROWS
     shifts, scale, threshold, surprise, vague = True, 1.0, 6.0, 20.0, 0.0
 
-    def look(self, image: NDArray[np.uint8] | None, _scene: int | None = None, _ranges_m: object = None) -> Features:
+    def look(self, image: Bytes | None, _scene: int | None = None, _ranges_m: object = None) -> Features:
         seen = cv2.resize(grey(image), (FILTERED_WIDTH, FILTERED_HEIGHT), interpolation=cv2.INTER_AREA).astype(
             np.float32
         )
@@ -81,7 +81,7 @@ class ComplexCells(FrontEnd):
             features[:, :, k] = cv2.resize(edges, (COLUMNS, BANDS), interpolation=cv2.INTER_AREA).T
         return np.minimum(np.rint(GAIN * features), 255).astype(np.uint8).ravel()
 
-    def picture(self, features: Features) -> NDArray[np.uint8]:
+    def picture(self, features: Features) -> Bytes:
         """Short bars along the edges; the stronger the edges, the brighter the bars."""
         glyphs = _glyphs()[None, None] * features.reshape(COLUMNS, BANDS, ORIENTATIONS, 1, 1)
         return glyphs.max(axis=2).transpose(1, 2, 0, 3).reshape(BANDS * GLYPH, COLUMNS * GLYPH).astype(np.uint8)
@@ -90,7 +90,7 @@ class ComplexCells(FrontEnd):
         return f"edges of {ORIENTATIONS} orientations in 12 x {BANDS} places, {features.mean():.0f} on average"
 
 
-def _glyphs() -> NDArray[np.float64]:
+def _glyphs() -> Floats:
     """A bar for each orientation of edge, 0 to 1, shape (4, 9, 9)."""
     middle = GLYPH // 2
     y, x = np.mgrid[-middle : middle + 1, -middle : middle + 1]
@@ -116,7 +116,7 @@ class HueSaturation(FrontEnd):
     columns, rows = COLUMNS, ROWS
     shifts, scale, threshold, surprise, vague = False, 2.5, 5.0, 20.0, 0.0
 
-    def look(self, image: NDArray[np.uint8] | None, _scene: int | None = None, _ranges_m: object = None) -> Features:
+    def look(self, image: Bytes | None, _scene: int | None = None, _ranges_m: object = None) -> Features:
         rgb = checked(image)
         if rgb.ndim == 2:
             raise ValueError(f"image must be in colour, shape (h, w, 3), for hue and saturation, got {rgb.shape}")
@@ -125,7 +125,7 @@ class HueSaturation(FrontEnd):
         shares = histogram(hsv[..., 0].ravel(), hsv[..., 1].ravel(), FULL_SATURATION, CERTAIN_SATURATION)
         return np.minimum(np.rint(255 / FULL_BIN * shares), 255).astype(np.uint8).ravel()
 
-    def picture(self, features: Features) -> NDArray[np.uint8]:
+    def picture(self, features: Features) -> Bytes:
         """Hue to the right, saturation downwards; each bin in its colour, the brighter the larger its share."""
         value = np.minimum(features.reshape(HUES, SATURATIONS).T * 2.5, 255).astype(np.uint8)
         hue = np.tile((np.arange(HUES) * 180 // HUES).astype(np.uint8), (SATURATIONS, 1))
@@ -137,9 +137,7 @@ class HueSaturation(FrontEnd):
         return f"mostly hue {hue * 360 // HUES}° at saturation {saturation} of {SATURATIONS - 1}"
 
 
-def histogram(
-    hue_deg: NDArray[np.float32], saturation: NDArray[np.float32], full: float, certain: float
-) -> NDArray[np.float64]:
+def histogram(hue_deg: Singles, saturation: Singles, full: float, certain: float) -> Floats:
     """Shares of the bins, shape (12, 8), sum 1. Every pixel is divided between the two nearest hues and the two nearest
     saturations; a saturation of `full` or more falls into the last bin.
 
@@ -175,14 +173,14 @@ class SceneNumbers(FrontEnd):
     shifts, scale, vague = False, 1000.0, 5.0  # other numbers are 10 levels away or more; a scene is no point
     threshold, surprise = vague, math.inf  # a number is either known or not, and does not tell how far apart scenes are
 
-    def look(self, _image: NDArray[np.uint8] | None, scene: int | None = None, _ranges_m: object = None) -> Features:
+    def look(self, _image: Bytes | None, scene: int | None = None, _ranges_m: object = None) -> Features:
         if not isinstance(scene, numbers.Integral) or isinstance(scene, bool) or not 0 <= scene <= LARGEST:
             raise ValueError(f"scene must be a whole number from 0 to {LARGEST} for scene numbers, got {scene!r}")
         features = np.zeros(SIZE, np.uint8)
         features[NUMBER] = np.frombuffer(int(scene).to_bytes(8, "little"), np.uint8)
         return features
 
-    def picture(self, features: Features) -> NDArray[np.uint8]:
+    def picture(self, features: Features) -> Bytes:
         """The number in digits."""
         text = self.words(features).removeprefix("scene ")
         (width, height), below = cv2.getTextSize(text, cv2.FONT_HERSHEY_DUPLEX, 1.0, 1)
