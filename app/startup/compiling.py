@@ -69,7 +69,6 @@ from ratslam_core import (
 from ratslam_core.extensions.familiar_ground import FamiliarGround
 from ratslam_core.extensions.kidnap_detector import ScanChange
 from ratslam_core.pose_cells.activity_kernels import X, Y
-from ratslam_core.pose_graph.experiences import Experiences
 from ratslam_live import command_of
 from sim2d import SONAR_ANGLES_RAD, Drive, Simulator, load_world
 
@@ -222,7 +221,6 @@ def loops() -> None:
         created = made.step(packet, seen, Odometry(0.3, 0.1, 0.1))
         made.ground.note(made, seen, created, Odometry(0.3, 0.1, 0.1), False)
         made.correct()
-    Experiences(shape).of_view(0)
     made.temporal_map.times_to(0)
     made.step(Packet(30.0, 30.0, 0.0, 1.0), Recognition(99, True, -1, 2.0), Odometry(0.3, 0.1, 0.1))
     made.temporal_map.times_to(0)  # is mended now

@@ -46,12 +46,6 @@ class Places:
     multiple_representations: tuple[MultipleRepresentation, ...]
     hash_collisions: tuple[HashCollision, ...]
 
-    def together_with(self, experience: int) -> Ints:
-        """All experiences of the same place, including this one."""
-        if not 0 <= experience < len(self.place_of):
-            raise ValueError(f"experience must be from 0 to {len(self.place_of) - 1}, got {experience!r}")
-        return np.flatnonzero(self.place_of == self.place_of[experience])
-
 
 def find_places(map_: PoseGraph, radius_m: float = 0.5) -> Places:
     """Group the experiences of a map, whichever way they face, and find multiple representations and hash collisions.

@@ -5,8 +5,6 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from ratslam_core.experience_map.experience_map import ExperienceMap, _Arrival
@@ -20,7 +18,7 @@ from ratslam_core.local_view.echo_matcher import EchoMatcher
 from ratslam_core.local_view.matcher import Matcher
 from ratslam_core.local_view.recogniser import LocalView, matcher_of
 from ratslam_core.local_view.view_links import ViewLinks
-from ratslam_core.pose_graph.experiences import BUCKET, Experiences
+from ratslam_core.pose_graph.experiences import Experiences
 from ratslam_core.pose_graph.transitions import BEHAVIOURS, Adjacency, PreintegratedOdometry, Transitions
 from ratslam_core.types import Ints, Recognition
 
@@ -131,37 +129,6 @@ def experiences(known: Experiences, views: int) -> None:
     for axis in range(3):
         within("a state", known.at[:n, axis], 0.0, known.shape[2 - axis])
     within("an experience's view", known.view[:n], -1, views - 1)
-    _chains(known, n, room)
-
-
-def _chains(known: Experiences, n: int, room: int) -> None:
-    """Each experience names the one before it of its view and of its bucket. The chains end, since the numbers fall."""
-    before = array("before of the view", known._before_of_view, np.int64, (room,))
-    expected, newest = _before(known.view[:n])
-    true(np.array_equal(before[:n], expected), "each experience must know the one before it of its view")
-    true(known._newest_of_view == newest, "each view must know its newest experience")
-    buckets = tuple(-(-size // BUCKET) for size in known.shape)
-    heads = array("the newest of each bucket", known._newest_in, np.int64, buckets)
-    x, y, theta = known.at[:n].astype(np.int64).T
-    n_theta, n_y, n_x = known.shape
-    own = (theta % n_theta // BUCKET, y % n_y // BUCKET, x % n_x // BUCKET)
-    key = np.asarray(np.ravel_multi_index(own, buckets), np.int64)
-    expected, newest = _before(key)
-    before = array("before in the bucket", known._before_in, np.int64, (room,))
-    true(np.array_equal(before[:n], expected), "each experience must know the one before it of its bucket")
-    wanted = np.full(math.prod(buckets), -1, np.int64)
-    wanted[list(newest)] = list(newest.values())
-    true(np.array_equal(heads.ravel(), wanted), "each bucket must know its newest experience")
-
-
-def _before(keys: Ints) -> tuple[Ints, dict[int, int]]:
-    """For each row the last before it with the same key, -1 for none; and the last row of each key."""
-    order = np.argsort(keys, kind="stable")
-    before = np.full(len(keys), -1, np.int64)
-    same = keys[order][1:] == keys[order][:-1]
-    before[order[1:][same]] = order[:-1][same]
-    last = order[np.append(~same, True)] if len(keys) else order
-    return before, dict(zip(keys[last].tolist(), last.tolist(), strict=True))
 
 
 def transitions(t: Transitions, nodes: int) -> None:

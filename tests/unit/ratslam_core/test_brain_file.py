@@ -137,8 +137,6 @@ MAP, GRAPH, KNOWN = "experience_map", "experience_map.transitions.graph", "exper
         (reshape("local_view._matcher._shifted", lambda a: a[:13]), r"the shifted view must have shape \(23, 96\)"),
         (write("local_view._templates", 5), "must be a ndarray, got a int"),
         (write("local_view.recognition.view", 800), "the recognised view must be a whole number from -1 to"),
-        (put(f"{KNOWN}._before_of_view", 0, 0), "each experience must know the one before it of its view"),
-        (put(f"{KNOWN}._newest_in", (0, 0, 0), 99), "each bucket must know its newest experience"),
         (put(f"{KNOWN}.pose", (0, 0), np.nan), "a place in the map must be from"),
         (put(f"{KNOWN}.view", 0, 500), "an experience's view must be from -1 to"),
         (put(f"{GRAPH}.other", 0, 2**32 - 1), "an other end must be from 0 to"),

@@ -123,7 +123,7 @@ def test_a_corridor_with_two_paths_through_the_cells_has_two_representations() -
     assert [m.experiences for m in found.multiple_representations] == [(k, 5 + k) for k in range(5)]
     assert [m.place for m in found.multiple_representations] == list(range(5))
     assert found.hash_collisions == ()
-    assert found.together_with(7).tolist() == [2, 7, 12]
+    assert np.flatnonzero(found.place_of == found.place_of[7]).tolist() == [2, 7, 12]
 
 
 def test_cells_that_stand_for_two_places_collide() -> None:
@@ -140,11 +140,7 @@ def test_cells_that_stand_for_two_places_collide() -> None:
         assert collision.y == 20.0
 
 
-def test_what_is_no_radius_and_no_experience_is_refused() -> None:
-    found = find_places(a_map([(0.0, 0.0, 0.0, 1.0, 1.0, 0.0)]))
-    for experience in (-1, 1):
-        with pytest.raises(ValueError, match=f"experience must be from 0 to 0, got {experience}"):
-            found.together_with(experience)
+def test_what_is_no_radius_is_refused() -> None:
     for radius in (0.0, -1.0, math.nan, math.inf):
         with pytest.raises(ValueError, match="radius_m must be a positive number of metres, got"):
             find_places(a_map([]), radius)
