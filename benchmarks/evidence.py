@@ -1,12 +1,16 @@
 """What an observation tells a robot that was carried away, and how soon it finds itself: what `extensions/evidence.py` rests on.
 
     python -m benchmarks.evidence fit                  # the curves, and how well those in use are calibrated
+    python -m benchmarks.evidence prior                # how likely a place is that a view suggests, before it is weighed
     python -m benchmarks.evidence kidnaps office living --seeds 50 --minutes 12
     python -m benchmarks.evidence picture office --first 500006 --minutes 12 --out docs/pictures/evidence.svg
 
 fit: robots drive over ground that they know. How alike are the views near where they truly are, and those near a wrong
 place that looked right one or two units of way before? The logarithm of the ratio of both shares is what an observation
 says. Calibrated: given a wrong place, the mean of e to that power is at most 1.
+
+prior: robots are carried as below. Of the places that views suggest while no hypothesis is right, some are. The prior is the
+log odds that predict how many, together with what each view says for its place.
 
 kidnaps: each robot explores, is carried 3 m or more and turned, and has two minutes. One judge, the evaluation: where
 the active experience was made, and the robot beside it, within 1 m and 0.6 rad for half a second.
@@ -30,7 +34,7 @@ from numpy.typing import NDArray
 
 from app.config import Config
 from app.session import Session
-from ratslam_core.extensions.evidence import LIKE, LIKENESS, ODDS, RINGS, nats
+from ratslam_core.extensions.evidence import CEILING, LIKE, LIKENESS, ODDS, PRIOR, RINGS, UNITS, nats
 from ratslam_core.types import Pose2, wrap_angles
 from sim2d import load_world, world_names
 
@@ -49,7 +53,7 @@ Job = tuple[str, int, float]  # world, seed, minutes of exploring
 
 def main() -> int:
     parser = argparse.ArgumentParser(description=(__doc__ or "").split("\n\n")[0])
-    parser.add_argument("what", choices=("fit", "kidnaps", "picture"))
+    parser.add_argument("what", choices=("fit", "prior", "kidnaps", "picture"))
     parser.add_argument("worlds", nargs="*", metavar="WORLD", help="default: " + ", ".join(WORLDS))
     parser.add_argument("--seeds", type=int, default=0, help="how many in each world (default: fit 2, kidnaps 10)")
     parser.add_argument("--first", type=int, default=0, help="the first of them (default: fit 910001, kidnaps 520000)")
@@ -68,6 +72,8 @@ def main() -> int:
         if args.what == "fit":
             told = list(pool.map(_likenesses, jobs))
             _print_fit([(world, rows) for (world, _, _), rows in zip(jobs, told, strict=True)])
+        elif args.what == "prior":
+            _print_prior(list(zip(jobs, pool.map(_suggested, jobs), strict=True)))
         else:
             _print_kidnaps(list(zip(jobs, pool.map(_kidnapped, jobs), strict=True)))
     return 0
@@ -184,6 +190,51 @@ def _said(rows: Rows) -> Iterator[float]:
                 yield float(nats(likeness, ring))
 
 
+# ---------------------------------------------------------------- how likely a suggested place is
+
+
+def _suggested(job: Job) -> Rows:
+    """Rows of the places that views suggest while no hypothesis is right: 1 for the right place, and what the view says."""
+    session = _explored(job)
+    map_, frame = session.brain.experience_map, session.evaluation.map_in_office(session.brain.experience_map)
+    _carry(session)
+    rows: list[tuple[float, float]] = []
+    for _ in range(SOON):
+        session.tick()
+        hypotheses = map_.evidence.hypotheses
+        right = _right(hypotheses, frame.inverse().compose(Pose2(*astuple(session.simulator.truth)[:3])))
+        new = (hypotheses[:, UNITS] == 1.0) & np.isfinite(hypotheses[:, CEILING])
+        if not map_.carried or right[~new].any():
+            break
+        rows += zip(right[new].astype(float), hypotheses[new, ODDS] - PRIOR, strict=True)
+    return np.array(rows).reshape(-1, 2)
+
+
+def _right(rows: Rows, truth: Pose2) -> NDArray[np.bool_]:
+    near = np.hypot(rows[:, 0] - truth.x, rows[:, 1] - truth.y) <= NEAR_RIGHT_M
+    return near & (np.abs(wrap_angles(rows[:, 2] - truth.heading_rad)) <= NEAR_RIGHT_RAD)
+
+
+def _print_prior(told: Sequence[tuple[Job, Rows]]) -> None:
+    print("world        places suggested   right   prior that predicts so many   without this world")
+    for world in dict.fromkeys(job[0] for job, _ in told):
+        own, others = (np.concatenate([r for job, r in told if (job[0] == world) == its]) for its in (True, False))
+        rest = f"{_prior(others):.2f}" if len(others) else "-"
+        print(f"{world:12s} {len(own):16d} {int(own[:, 0].sum()):7d} {_prior(own):29.2f} {rest:>20s}")
+    everything = np.concatenate([rows for _, rows in told])
+    print(f"all          {len(everything):16d} {int(everything[:, 0].sum()):7d} {_prior(everything):29.2f}")
+
+
+def _prior(rows: Rows) -> float:
+    """The log odds for which the expected number of right places is the one that was found, by halving."""
+    low, high = -20.0, 20.0
+    for _ in range(60):
+        middle = (low + high) / 2
+        expected = float(np.sum(1 / (1 + np.exp(-(middle + rows[:, 1])))))
+        low, high = (middle, high) if expected < rows[:, 0].sum() else (low, middle)
+    return (low + high) / 2
+
+
 # ---------------------------------------------------------------- kidnaps
 
 
@@ -241,12 +292,10 @@ def _draw(session: Session, path: Path) -> None:
     while session.time_s < began + 60 and (session.time_s == began or map_.carried):
         session.tick()
         truth = frame.inverse().compose(Pose2(*astuple(session.simulator.truth)[:3]))
-        for row in map_.evidence.hypotheses:
-            times.append(session.time_s - began)
-            odds.append(float(row[ODDS]))
-            turn = abs(math.remainder(float(row[2]) - truth.heading_rad, math.tau))
-            near = math.hypot(float(row[0]) - truth.x, float(row[1]) - truth.y) <= NEAR_RIGHT_M
-            right.append(near and turn <= NEAR_RIGHT_RAD)
+        rows = map_.evidence.hypotheses
+        times += [session.time_s - began] * len(rows)
+        odds += rows[:, ODDS].tolist()
+        right += _right(rows, truth).tolist()
     figure = Figure((7.2, 3.0), layout="constrained")
     axes = figure.add_subplot()
     for kind, colour, size, label in ((False, "#999999", 5, "wrong places"), (True, "#0E7FB8", 14, "the right place")):

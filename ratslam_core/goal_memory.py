@@ -248,20 +248,9 @@ def centre(flats: Ints, values: Floats, shape: Shape, near: int) -> tuple[float,
 
 @njit(cache=True, nogil=True)
 def _learn(
-    flats_i: Ints,
-    G_i: Floats,
-    flats_j: Ints,
-    G_j: Floats,
-    keys: Ints,
-    times: Singles,
-    used: int,
-    shape: Shape,
-    elapsed: float,
-    time_weight: float,
-    activity_weight: float,
-    distance_weight: float,
-    rate: float,
-) -> int:
+    flats_i: Ints, G_i: Floats, flats_j: Ints, G_j: Floats, keys: Ints, times: Singles, used: int, shape: Shape,
+    elapsed: float, time_weight: float, activity_weight: float, distance_weight: float, rate: float,
+) -> int:  # fmt: skip
     """tau_ij = tau_ji <- moving average of a dt + b (1 - G_i G_j / G_max^2) + g |i - j|. IROS 2005 eqs. 2-5.
 
     i: active in the iteration before; j: active now. The first value replaces the large one that a link starts with.

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import math
-
 from disk import kind
 from ratslam_core.experience_map.experience_map import ExperienceMap
 from ratslam_core.pose_graph.transitions import moved_by
-from ratslam_core.types import IDENTITY, Odometry, Packet, Pose2, Recognition, wrap_angle
+from ratslam_core.types import IDENTITY, Odometry, Packet, Recognition
 
 
 @kind("cells only/1")
@@ -26,12 +24,7 @@ class CellsOnly(ExperienceMap):
         if self.here < 0:
             self._create(packet, seen.view, IDENTITY)
             return True
-        dx, dy, dtheta = self._experiences.cells_from(0, packet)
-        facing = self.cell_states[0, 2] * 2 * math.pi / self.shape[0]
-        c, s = math.cos(facing), math.sin(facing)
-        dx, dy = dx * self.cell_m, dy * self.cell_m
-        turn = wrap_angle(dtheta * 2 * math.pi / self.shape[0])
-        self.pose_filter.local = Pose2(c * dx + s * dy, -s * dx + c * dy, turn)
+        self.pose_filter.local = self._told_by_cells(0, packet)
         return False
 
     def move(self, odometry: Odometry) -> None:

@@ -68,9 +68,7 @@ class ExperienceMap(PoseGraph):
         self._edges = OdometryEdges() if self.params.odometry_edges else NoOdometryEdges()
         self.here = -1  # the experience at which the map is being learnt
         self.carried = False  # it knows that it was carried away and has not found itself again
-        self.corrected = (
-            0  # how often evidence proved it elsewhere: carried unnoticed, slipped, or merged where it was not
-        )
+        self.corrected = 0  # how often evidence proved it elsewhere: carried unnoticed, slipped, merged wrongly
         self.agrees = True  # whether the last observation agreed with where the robot believed itself to be
         self._offset = IDENTITY  # the robot in the frame of the active experience, at the best observation so far
         self._sigma = 0.0  # how far off that may be, m
@@ -390,14 +388,17 @@ class ExperienceMap(PoseGraph):
             return IDENTITY
         if self.energy(experience, packet, seen.view) <= self.params.threshold:  # recognised by its view alone
             return Pose2(0.0, 0.0, seen.facing_rad or 0.0)
+        told = self._told_by_cells(experience, packet)
+        turn = seen.facing_rad if seen.view >= 0 else None
+        return told if turn is None else Pose2(told.x, told.y, wrap_angle(turn))
+
+    def _told_by_cells(self, experience: int, packet: Packet) -> Pose2:
+        """The robot's pose in the frame of an experience, by the pose cells alone."""
         dx, dy, dtheta = self._experiences.cells_from(experience, packet)
         facing = self.cell_states[experience, 2] * 2 * math.pi / self.shape[0]
         c, s = math.cos(facing), math.sin(facing)
         dx, dy = dx * self.cell_m, dy * self.cell_m
-        turn = seen.facing_rad if seen.view >= 0 else None
-        if turn is None:  # only the pose cells tell the heading
-            turn = dtheta * 2 * math.pi / self.shape[0]
-        return Pose2(c * dx + s * dy, -s * dx + c * dy, wrap_angle(turn))
+        return Pose2(c * dx + s * dy, -s * dx + c * dy, wrap_angle(dtheta * 2 * math.pi / self.shape[0]))
 
     def _deviation(self, seen: Recognition) -> float:
         """How far (m) the robot may be from where the view was taken: the more the view differs, the farther."""

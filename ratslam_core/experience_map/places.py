@@ -153,14 +153,9 @@ def _buckets(around: Ints, value: float, ring: float, reach: float, prime: int) 
 
 @njit(cache=True, nogil=True)
 def _rivals(
-    place: Ints,
-    facing: Floats,
-    states: Floats,
-    ring: tuple[float, float, float],
-    reach_facing: float,
-    reach: float,
+    place: Ints, facing: Floats, states: Floats, ring: tuple[float, float, float], reach_facing: float, reach: float,
     reach_t: float,
-) -> Flags:
+) -> Flags:  # fmt: skip
     """(n,): the first experiences of states that share place and facing with another state.
 
     place: (n,) the first experience of each one's place.

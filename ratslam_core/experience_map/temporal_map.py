@@ -109,17 +109,13 @@ class _Asked:
             self.seconds += delays
         self.changes, self.reach, self.pace = graph.changes, reach, map_.pace
         self.poses = map_.poses.copy() if reach > 0 else map_.poses
-        grid: tuple[Ints32, Ints32] = (
-            dijkstra.buckets(self.poses, reach) if reach > 0 else (np.zeros(0, np.int32), np.zeros(0, np.int32))
-        )
+        none: tuple[Ints32, Ints32] = np.zeros(0, np.int32), np.zeros(0, np.int32)
+        grid = dijkstra.buckets(self.poses, reach) if reach > 0 else none
         self.links = graph.start, graph.used, graph.half, graph.other, self.seconds
         self.near = self.poses, reach, self.pace, *grid
 
     def same_as(self, other: _Asked) -> bool:
-        if (
-            self.changes != other.changes
-            or self.reach != other.reach
-            or not np.array_equal(self.seconds, other.seconds)
-        ):
+        same = self.changes == other.changes and self.reach == other.reach
+        if not same or not np.array_equal(self.seconds, other.seconds):
             return False
         return self.reach == 0 or (self.pace == other.pace and np.array_equal(self.poses, other.poses))

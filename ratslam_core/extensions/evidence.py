@@ -28,6 +28,8 @@ from numba import njit
 
 from disk import kind
 from ratslam_core.params import EvidenceParams
+from ratslam_core.parts import LocalViewPart
+from ratslam_core.pose_graph.transitions import moved_by
 from ratslam_core.types import Flags, Floats, Ints, Ints32, Odometry, Pose2, wrap_angle, wrap_angles
 
 MOST = 32  # hypotheses
@@ -64,14 +66,6 @@ NATS: Floats = np.array(
     ]
 )
 X, Y, HEADING, ODDS, UNITS, SUBMAP, CEILING = range(7)  # of a row
-
-
-class Views(Protocol):
-    """What has to be known of the local view."""
-
-    @property
-    def column_rad(self) -> float: ...
-    def apart_at(self, views: Ints, shifts: Ints, slack: int, /) -> tuple[Floats, Ints]: ...
 
 
 class Map(Protocol):
@@ -154,11 +148,10 @@ class Evidence:
         units = abs(way) / (UNIT * self.cell_m) + abs(turn) / UNIT_RAD
         self._units, self._quiet = min(1.0, self._units + units), self._quiet + units
         if self.belief is not None:
-            moved = self.belief.pose.compose(Pose2(way * math.cos(turn / 2), way * math.sin(turn / 2), turn))
-            facing = wrap_angle(self.belief.facing_rad + turn)
+            moved, facing = self.belief.pose.compose(moved_by(odometry)), wrap_angle(self.belief.facing_rad + turn)
             self.belief = Belief(moved, self.belief.log_odds, self.belief.experience, facing)
 
-    def observe(self, map_: Map, views: Views, submap: int) -> None:
+    def observe(self, map_: Map, views: LocalViewPart, submap: int) -> None:
         """What the local view sees speaks for the hypotheses where it is expected, and against the others.
 
         submap: where the robot is mapping, which is no hypothesis unless it is in doubt.
@@ -184,7 +177,7 @@ class Evidence:
         self._count = _merge(self._rows, self._count, least, self.cell_m)
         self._believe(map_, views, known)
 
-    def _weigh(self, map_: Map, views: Views, known: Ints, usual: float, units: float, submap: int) -> None:
+    def _weigh(self, map_: Map, views: LocalViewPart, known: Ints, usual: float, units: float, submap: int) -> None:
         there = _Expected(map_, views, known, self.hypotheses)
         _weigh(self.hypotheses, there.ring, there.apart / usual, units)
         if self.in_doubt:
@@ -213,7 +206,7 @@ class Evidence:
         here = self._here(robot)
         return rows[~here], [self.here, *rows[here, ODDS], -self.params.unnoticed]
 
-    def _believe(self, map_: Map, views: Views, known: Ints) -> None:
+    def _believe(self, map_: Map, views: LocalViewPart, known: Ints) -> None:
         self.belief = None
         rows, beside = self.weighed(map_.robot_here)
         if not len(rows):
@@ -251,7 +244,7 @@ def _row(pose: Pose2, odds: float, submap: int) -> Floats:
 class _Expected:
     """For each hypothesis the view near it that is most like what is seen."""
 
-    def __init__(self, map_: Map, views: Views, known: Ints, rows: Floats) -> None:
+    def __init__(self, map_: Map, views: LocalViewPart, known: Ints, rows: Floats) -> None:
         column = views.column_rad
         self.ring, pairs = _near(rows, map_.poses, map_.submap_of, known, column, map_.cell_m)
         owner, which, shift = pairs.T

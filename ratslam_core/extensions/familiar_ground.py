@@ -12,6 +12,8 @@ test_familiar_ground.py. `NewGround` is the plain twin: every place is new for e
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
+from types import MappingProxyType
 from typing import Protocol
 
 import numpy as np
@@ -19,10 +21,11 @@ from numba import njit
 
 from disk import kind
 from ratslam_core.beats import weight
+from ratslam_core.extensions import evidence
 from ratslam_core.extensions.pose_filter import PoseFilter
 from ratslam_core.extensions.submaps import Submaps
 from ratslam_core.pose_graph.transitions import Transitions
-from ratslam_core.types import Floats, Ints, Ints32, Odometry, Pose2, Recognition
+from ratslam_core.types import Floats, Ints, Ints32, Odometry, Recognition
 
 ENOUGH = 0.5  # a place is familiar when the shares of recognised observations of the experiences there add up to this
 OBSERVATIONS = 20  # over which that share is averaged
@@ -34,37 +37,27 @@ LINKS = 4  # two experiences that both have so many get none between them
 MOST_NEAR = 256  # experiences near the robot that are looked at
 
 
-class Map(Protocol):
+class Map(evidence.Map, Protocol):
     """What has to be known of an experience map."""
 
     here: int
-    cell_m: float
     agrees: bool  # whether the last observation agreed with where the robot believed itself to be
     submaps: Submaps
     pose_filter: PoseFilter
 
     def __len__(self) -> int: ...
-    @property
-    def poses(self) -> Floats: ...
-    @property
-    def views(self) -> Ints: ...
-    @property
-    def submap_of(self) -> Ints32: ...
-    @property
-    def robot_here(self) -> Pose2: ...
 
 
-@kind("familiar ground/3")
+@kind("familiar ground/4")
 class FamiliarGround:
     """`familiar` says whether the robot is at a place that is known well enough."""
 
     def __init__(self) -> None:
         self.familiar = False
-        self.pruned = 0  # observations so far that would have become experiences
-        self.adopted = 0  # observations so far that were taken for an experience since it is near in the map
         self.faded = -1  # the view whose room the next one gets, -1 for none: the place has room
-        self.views_faded = 0  # views so far that another took the room of
-        self.links_pruned = 0
+        # How much was not kept so far, for people to see: sights that would have become experiences, or were taken for one that
+        # is near in the map; links; and views that another took the room of.
+        self.let_go = {"sights": 0, "experiences_adopted": 0, "links": 0, "views_faded": 0}
         self._let_go = False  # what was seen in this step
         self._share = np.zeros(1024)
         self._unseen = np.zeros(1024, np.int64)  # counted observations near each experience since it was recognised
@@ -75,16 +68,6 @@ class FamiliarGround:
     def near(self) -> Ints:
         """The experiences near the robot that face alike; none if it is not sure of its place. A view."""
         return self._near[: self._found]
-
-    @property
-    def let_go(self) -> dict[str, int]:
-        """How much was not kept so far, for people to see."""
-        return {
-            "sights": self.pruned,
-            "experiences_adopted": self.adopted,
-            "links": self.links_pruned,
-            "views_faded": self.views_faded,
-        }
 
     @property
     def share(self) -> Floats:
@@ -104,14 +87,14 @@ class FamiliarGround:
         own = self.near[map_.views[self.near] == view] if view >= 0 else self.near[:0]
         if len(own) == 0:
             return -1
-        self.adopted += 1
+        self.let_go["experiences_adopted"] += 1
         robot = map_.robot_here
         return int(own[np.argmin(np.hypot(map_.poses[own, 0] - robot.x, map_.poses[own, 1] - robot.y))])
 
     def prune(self) -> bool:
         """Whether to let go what was seen, which fits no experience."""
         self._let_go = self.familiar
-        self.pruned += self.familiar
+        self.let_go["sights"] += self.familiar
         return self.familiar
 
     def well_tied(self, t: Transitions, i: int, j: int) -> bool:
@@ -121,7 +104,7 @@ class FamiliarGround:
         test_familiar_ground.py::test_no_place_gets_links_without_end.
         """
         tied = min(_ties(t, i), _ties(t, j)) >= LINKS
-        self.links_pruned += tied
+        self.let_go["links"] += tied
         return tied
 
     def note(self, map_: Map, seen: Recognition, created: bool, odometry: Odometry, lost: bool, beats: int = 1) -> None:
@@ -134,7 +117,7 @@ class FamiliarGround:
         while len(map_) > len(self._share):
             self._share = np.concatenate([self._share, np.zeros_like(self._share)])
             self._unseen = np.concatenate([self._unseen, np.zeros_like(self._unseen)])
-        self.views_faded += seen.recruited and seen.view == self.faded
+        self.let_go["views_faded"] += seen.recruited and seen.view == self.faded
         if not odometry.still and (seen.view >= 0 or seen.familiar):
             hit = map_.agrees and not (created or self._let_go)
             _count(self._share, self._unseen, self.near, float(hit), weight(1 / OBSERVATIONS, beats), beats)
@@ -172,11 +155,7 @@ class NewGround:
 
     familiar = False
     faded = -1
-    pruned = adopted = links_pruned = views_faded = 0
-
-    @property
-    def let_go(self) -> dict[str, int]:
-        return {}
+    let_go: Mapping[str, int] = MappingProxyType({})
 
     def forget(self) -> None:
         """There is nothing to forget."""
@@ -210,18 +189,9 @@ def _count(share: Floats, unseen: Ints, near: Ints, hit: float, rate: float, bea
 
 @njit(cache=True, nogil=True)
 def _near(
-    poses: Floats,
-    views: Ints,
-    submaps: Ints32,
-    submap: int,
-    share: Floats,
-    x: float,
-    y: float,
-    heading: float,
-    near_m: float,
-    near_rad: float,
-    out: Ints,
-) -> tuple[int, float]:
+    poses: Floats, views: Ints, submaps: Ints32, submap: int, share: Floats, x: float, y: float, heading: float,
+    near_m: float, near_rad: float, out: Ints,
+) -> tuple[int, float]:  # fmt: skip
     """The experiences of a submap near a place that face alike and have a view, and the sum of their shares.
 
     As many as there is room for in `out`.

@@ -71,9 +71,8 @@ class Submaps:
         """The last merge was wrong: the robot is at `claimed`, not at `robot`, and so is all that came with it."""
         assert self.last_merge is not None
         ends = t.ends[: t.count]
-        t.let_go(
-            np.flatnonzero((ends < self.last_merge.first).any(axis=1) & (ends >= self.last_merge.first).any(axis=1))
-        )
+        came = ends >= self.last_merge.first
+        t.let_go(np.flatnonzero(came.any(axis=1) & ~came.all(axis=1)))
         move(np.arange(self.last_merge.first, len(poses)), poses, robot, claimed)
 
 

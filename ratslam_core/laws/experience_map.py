@@ -14,13 +14,11 @@ from ratslam_core.extensions.exact_solver import ExactSolver
 from ratslam_core.extensions.familiar_ground import MOST_NEAR, FamiliarGround
 from ratslam_core.extensions.odometry_edges import OdometryEdges
 from ratslam_core.laws.measures import FAR_M, MOST, TURN, apart, array, number, pose, true, whole, within
-from ratslam_core.local_view.echo_matcher import EchoMatcher
-from ratslam_core.local_view.matcher import Matcher
-from ratslam_core.local_view.recogniser import LocalView, matcher_of
-from ratslam_core.local_view.view_links import ViewLinks
+from ratslam_core.local_view.recogniser import LocalView
+from ratslam_core.local_view.view_links import ViewLinks, in_use
 from ratslam_core.pose_graph.experiences import Experiences
 from ratslam_core.pose_graph.transitions import BEHAVIOURS, Adjacency, PreintegratedOdometry, Transitions
-from ratslam_core.types import Ints, Recognition
+from ratslam_core.types import Recognition
 
 LARGEST = 1e12  # of metres, seconds and weights
 FASTEST = 10.0  # rad/s, the largest yaw bias
@@ -84,8 +82,8 @@ def _evidence(evidence: Evidence, n: int, submaps: int) -> None:
 
 
 def _ground(ground: FamiliarGround, n: int, views: int) -> None:
-    for name in ("pruned", "adopted", "links_pruned", "views_faded"):
-        whole(name, getattr(ground, name))
+    for name in FamiliarGround().let_go:
+        whole(name, ground.let_go.get(name))
     share = array("shares", ground._share, np.float64, (None,))
     true(len(share) >= n, "each experience must have a share of recognised observations")
     within("a share", share, 0.0, 1.0)
@@ -171,7 +169,7 @@ def _adjacency(graph: Adjacency, nodes: int) -> None:
     apart("blocks of half-edges", graph.start[:nodes], rooms[:nodes], whole("their end", graph._end, 0, size), size)
     true((rooms[:nodes] > 0).all(), "a block of half-edges must have room to double")
     true((used[:nodes] <= rooms[:nodes]).all(), "a block of half-edges must have room for those in use")
-    at = _places(graph.start[:nodes].astype(np.int64), used[:nodes].astype(np.int64))
+    at = in_use(graph.start[:nodes].astype(np.int64), used[:nodes].astype(np.int64))
     if nodes:
         within("an other end", other[at], 0, nodes - 1)
     whole("changes", graph.changes)
@@ -180,19 +178,13 @@ def _adjacency(graph: Adjacency, nodes: int) -> None:
 def _halves(t: Transitions, n: int, nodes: int) -> None:
     """Every row appears twice, at its beginning and at its end, and each of the two names the other."""
     graph, used = t.graph, t.graph.used[:nodes].astype(np.int64)
-    at = _places(graph.start[:nodes].astype(np.int64), used)
+    at = in_use(graph.start[:nodes].astype(np.int64), used)
     half, other = graph.half[at].astype(np.int64), graph.other[at].astype(np.int64)
     node = np.repeat(np.arange(nodes), used)
     true(np.array_equal(np.sort(half), np.arange(2 * n)), "each transition must have its two half-edges")
     row, end = half >> 1, half & 1
     right = (t.ends[row, end] == node) & (t.ends[row, 1 - end] == other)
     true(right.all(), "a half-edge must name the ends of its transition")
-
-
-def _places(start: Ints, used: Ints) -> Ints:
-    """Where in an arena the blocks' entries in use lie, block after block."""
-    begins = np.cumsum(used) - used
-    return np.arange(int(used.sum())) + np.repeat(start - begins, used)
 
 
 def local_view(view: LocalView) -> None:
@@ -208,7 +200,6 @@ def local_view(view: LocalView) -> None:
     number("surprise", view.image_change, 0.0)
     whole("false positives", view.false_positives)
     _recognition(view.recognition, count)
-    _matcher(view._matcher, matcher_of(view.front_end))
 
 
 def _recognition(seen: Recognition, count: int) -> None:
@@ -217,22 +208,6 @@ def _recognition(seen: Recognition, count: int) -> None:
     number("its difference", seen.difference, 0.0)
     if seen.facing_rad is not None:
         number("its facing", seen.facing_rad, -20.0, 20.0)
-
-
-def _matcher(matcher: Matcher, fresh: Matcher) -> None:
-    same = (matcher.columns, matcher.rows) == (fresh.columns, fresh.rows)
-    true(same, "the matcher must be of the front end's columns and rows")
-    if isinstance(matcher, EchoMatcher) and isinstance(fresh, EchoMatcher):
-        same = (matcher.echoes, matcher.echo_weight) == (fresh.echoes, fresh.echo_weight)
-        true(same, "the matcher must weigh echoes as the front end does")
-        whole("where the search begins", matcher._guess, 0)
-    true(type(matcher) is type(fresh), "the matcher must be of the front end's kind")
-    array("masks", matcher._masks, np.uint8, fresh._masks.shape)
-    true(np.array_equal(matcher._masks, fresh._masks), "masks must be those of the shifts")
-    shifted = array("the shifted view", matcher._shifted, np.uint8, fresh._shifted.shape)
-    true(not (shifted & ~fresh._masks).any(), "the shifted view must be empty where nothing overlaps")
-    array("least", matcher._least, np.int32, fresh._least.shape)
-    array("at", matcher._at, np.int64, fresh._at.shape)
 
 
 def view_links(links: ViewLinks, views: int, cells: int) -> None:
@@ -245,7 +220,7 @@ def view_links(links: ViewLinks, views: int, cells: int) -> None:
     apart("blocks of links", start, room, whole("their end", links._end, 0, size), size)
     true(((used >= 0) & (used <= room)).all(), "a block of links must have room for those in use")
     true(not used[views:].any(), f"only the {views} known views may have links")
-    at = _places(start, used)
+    at = in_use(start, used)
     within("a linked cell", links._cells[at], 0, cells - 1)
     within("a strength", strength[at], 0.0, float(np.finfo(np.float32).max))
 

@@ -8,7 +8,6 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from disk import kind
 from ratslam_core.local_view.matcher import SIZE, Features, Matcher, shift_all, sum_apart
 from ratslam_core.types import Bytes, Floats, Uints
 
@@ -45,7 +44,6 @@ def _owner(array: Bytes) -> Bytes:
     return array.base if isinstance(array.base, np.ndarray) else array
 
 
-@kind("echo matcher/1")
 class EchoMatcher(Matcher):
     """As `Matcher`, for features with echoes behind the columns. They do not shift.
 
@@ -53,12 +51,11 @@ class EchoMatcher(Matcher):
     test_matchers.py::test_the_nearest_view_is_that_of_the_loops_bit_for_bit.
     """
 
-    __slots__ = ("_heard",)  # no attribute, and so no part of the state: it is made from the views
-
     def __init__(self, columns: int, rows: int, echoes: int, echo_weight: float) -> None:
         super().__init__(columns, rows)
         self.echoes, self.echo_weight = echoes, echo_weight
         self._guess = 0  # where the search begins: a view seen a moment ago is near, and rules out most others
+        self._heard: HeardEchoes | None = None
 
     def nearest(self, known: Bytes, new: Features, most: int) -> tuple[int, float, int]:
         if len(known) == 0:
@@ -73,34 +70,21 @@ class EchoMatcher(Matcher):
         return found
 
     def replaced(self, view: int, new: Features) -> None:
-        heard = getattr(self, "_heard", None)
-        if heard is not None:
-            heard.replace(view, new)
+        if self._heard is not None:
+            self._heard.replace(view, new)
 
     def _heard_in(self, known: Bytes) -> HeardEchoes:
-        heard: HeardEchoes | None = getattr(self, "_heard", None)
-        if heard is None or not heard.holds(known):
-            heard = self._heard = HeardEchoes(known, self.columns * self.rows)
-        heard.take(known)
-        return heard
+        if self._heard is None or not self._heard.holds(known):
+            self._heard = HeardEchoes(known, self.columns * self.rows)
+        self._heard.take(known)
+        return self._heard
 
 
 @njit(cache=True, nogil=True)
 def _nearest(
-    known: Bytes,
-    new: Features,
-    most: int,
-    columns: int,
-    rows: int,
-    echoes: int,
-    weight: float,
-    guess: int,
-    shifted: Bytes,
-    masks: Bytes,
-    echoes_of: Bytes,
-    total: NDArray[np.int16],
-    kept: Uints,
-) -> tuple[int, float, int]:
+    known: Bytes, new: Features, most: int, columns: int, rows: int, echoes: int, weight: float, guess: int,
+    shifted: Bytes, masks: Bytes, echoes_of: Bytes, total: NDArray[np.int16], kept: Uints,
+) -> tuple[int, float, int]:  # fmt: skip
     tried, widths = shift_all(new, most, columns, rows, shifted)
     size = columns * rows
     views, masked, heard = shifted[tried], masks[tried], new[size:]
@@ -146,18 +130,9 @@ def _keep_near(total: NDArray[np.int16], n: int, echoes: int, weight: float, lim
 
 @njit(cache=True, nogil=True, inline="always")
 def _search(
-    known: Bytes,
-    near: Uints,
-    echo_sums: NDArray[np.int16],
-    echoes: int,
-    shifted: Bytes,
-    masks: Bytes,
-    widths: Floats,
-    weight: float,
-    half: int,
-    size: int,
-    limit: float,
-) -> tuple[int, float, int]:
+    known: Bytes, near: Uints, echo_sums: NDArray[np.int16], echoes: int, shifted: Bytes, masks: Bytes,
+    widths: Floats, weight: float, half: int, size: int, limit: float,
+) -> tuple[int, float, int]:  # fmt: skip
     """Of these views, the nearest that is no farther than `limit`. Among equals the first shift wins, then the first view."""
     best, least, by = -1, limit, len(shifted)
     for i in near:

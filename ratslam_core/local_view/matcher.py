@@ -11,7 +11,6 @@ import math
 import numpy as np
 from numba import njit
 
-from disk import kind
 from ratslam_core.params import COLUMNS, ROWS
 from ratslam_core.types import Bytes, Floats, Ints, Ints32
 
@@ -21,7 +20,6 @@ BLOCK = 128  # stored views that stay in the processor's nearest cache while all
 Features = Bytes  # (columns * rows,)
 
 
-@kind("matcher/1")
 class Matcher:
     """Finds the nearest of the stored views. Owns its small buffers, so that a search allocates nothing."""
 
@@ -105,18 +103,9 @@ def least_difference(new: Features, stored: Features, most: int, columns: int, r
 
 @njit(cache=True, nogil=True)
 def _apart_at_any_size(
-    known: Bytes,
-    new: Features,
-    views: Ints,
-    shifts: Ints,
-    slack: int,
-    most: int,
-    columns: int,
-    rows: int,
-    echo_weight: float,
-    shifted: Bytes,
-    masks: Bytes,
-) -> tuple[Floats, Ints]:
+    known: Bytes, new: Features, views: Ints, shifts: Ints, slack: int, most: int, columns: int, rows: int,
+    echo_weight: float, shifted: Bytes, masks: Bytes,
+) -> tuple[Floats, Ints]:  # fmt: skip
     """For each of these views its least `difference` at shifts within `slack` of the one given, and that shift."""
     size = columns * rows
     tried, widths = shift_all(new, most, columns, rows, shifted)
@@ -128,18 +117,9 @@ def _apart_at_any_size(
 
 @njit(cache=True, nogil=True, inline="always")
 def _apart_at(
-    known: Bytes,
-    new: Features,
-    views: Ints,
-    shifts: Ints,
-    slack: int,
-    most: int,
-    size: int,
-    echo_weight: float,
-    shifted: Bytes,
-    masks: Bytes,
-    widths: Floats,
-) -> tuple[Floats, Ints]:
+    known: Bytes, new: Features, views: Ints, shifts: Ints, slack: int, most: int, size: int, echo_weight: float,
+    shifted: Bytes, masks: Bytes, widths: Floats,
+) -> tuple[Floats, Ints]:  # fmt: skip
     least, by = np.full(len(views), np.inf), np.zeros(len(views), np.int64)
     for k in range(len(views)):
         stored = known[views[k]]
@@ -201,16 +181,9 @@ def sub_column(new: Features, stored: Features, shift: int, columns: int, rows: 
 
 @njit(cache=True, nogil=True)
 def _nearest(
-    known: Bytes,
-    new: Features,
-    most: int,
-    columns: int,
-    rows: int,
-    shifted: Bytes,
-    masks: Bytes,
-    least: Ints32,
+    known: Bytes, new: Features, most: int, columns: int, rows: int, shifted: Bytes, masks: Bytes, least: Ints32,
     at: Ints,
-) -> tuple[int, float, int]:
+) -> tuple[int, float, int]:  # fmt: skip
     tried, widths = shift_all(new, most, columns, rows, shifted)
     if known.shape[1] == SIZE:  # five times as quick with the size as a constant
         _least_sums(known, shifted[tried], masks[tried], SIZE, least, at)

@@ -24,11 +24,12 @@ TURN_SLACK = 0.3  # share of the turn by which the wheels may be wrong about it 
 MOST_SHIFT = 6  # columns; beyond, too little is left to compare
 
 
-@kind("local view/3")
+@kind("local view/4")
 class LocalView:
     """The known scenes. `observe` recognises an image or recruits a new cell for it."""
 
     SHARED = ("features", "_last")  # one array, which is never written to
+    CACHES = ("_search",)  # made from the front end and the views
 
     def __init__(
         self,
@@ -48,11 +49,16 @@ class LocalView:
         self.false_positives = 0  # so far
         self._templates = np.zeros((1024, size), np.uint8)
         self._count = 0
-        self._matcher = matcher_of(end)
+        self._search: Matcher | None = None
         self._last: Features | None = None
 
     def __len__(self) -> int:
         return self._count
+
+    @property
+    def _matcher(self) -> Matcher:
+        self._search = self._search or matcher_of(self.front_end)
+        return self._search
 
     @property
     def templates(self) -> Bytes:
@@ -74,8 +80,9 @@ class LocalView:
         """How far one known view is from what was seen last, as `Recognition.difference` counts it."""
         most = self.params.shift if self.front_end.shifts else 0
         stored = self.stored(view)
-        apart = self._least_apart(self.features, stored, most)
-        return self._levels(apart + self._heard_apart(self.features, stored), self.features)
+        end, new = self.front_end, self.features
+        heard = end.echo_weight * heard_apart(new, stored, end.columns * end.rows) if end.echoes else 0.0
+        return self._levels(least_difference(new, stored, most, end.columns, end.rows) + heard, new)
 
     def apart_at(self, views: Ints, shifts: Ints, slack: int) -> tuple[Floats, Ints]:
         """[ours] How unlike (bytes) each of these views (k,) is to what was seen last, shifted by so many columns, give or take
@@ -133,9 +140,8 @@ class LocalView:
         elif room is not None and room.familiar:
             self.recognition = Recognition(NOTHING, False, best, apart, familiar=True)
         else:
-            self.recognition = Recognition(
-                self._recruit(features, -1 if room is None else room.faded), True, best, apart
-            )
+            new = self._recruit(features, -1 if room is None else room.faded)
+            self.recognition = Recognition(new, True, best, apart)
         return self.recognition
 
     def _recognised(self, best: int, apart: float, shift: int) -> Recognition:
@@ -186,22 +192,14 @@ class LocalView:
         end = self.front_end
         return max(apart * end.scale + end.doubt(new), end.vague)
 
-    def _heard_apart(self, new: Features, stored: Features) -> float:
-        end = self.front_end
-        return end.echo_weight * heard_apart(new, stored, end.columns * end.rows) if end.echoes else 0.0
-
-    def _least_apart(self, new: Features, stored: Features, most: int) -> float:
-        return least_difference(new, stored, most, self.front_end.columns, self.front_end.rows)
-
     def _recruit(self, features: Features, faded: int) -> int:
         if faded >= 0:
             self._templates[faded] = features
             self._matcher.replaced(faded, features)
             return faded
         if self._count == len(self._templates):
-            more = np.zeros(
-                (self._count // 2, features.size), np.uint8
-            )  # half as many again, which keeps a view below 150 bytes
+            half = self._count // 2  # as many again, which keeps a view below 150 bytes
+            more = np.zeros((half, features.size), np.uint8)
             self._templates = np.concatenate([self._templates, more])
         self._templates[self._count] = features
         self._count += 1
@@ -210,8 +208,6 @@ class LocalView:
 
 def matcher_of(end: FrontEnd) -> Matcher:
     """The matcher for a front end's features."""
-    return (
-        EchoMatcher(end.columns, end.rows, end.echoes, end.echo_weight)
-        if end.echoes
-        else Matcher(end.columns, end.rows)
-    )
+    if end.echoes:
+        return EchoMatcher(end.columns, end.rows, end.echoes, end.echo_weight)
+    return Matcher(end.columns, end.rows)

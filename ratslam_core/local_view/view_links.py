@@ -54,8 +54,11 @@ class ViewLinks:
 
         column: the place, a flat index modulo `columns`. For inspection only: it goes through all links.
         """
+        start, used, _ = self._blocks[:views].T
+        at = in_use(start, used)
         strength = np.zeros(views, np.float32)
-        _sum_at(self._blocks, min(views, len(self._blocks)), self._cells, self._strength, column, columns, strength)
+        here = self._cells[at] % columns == column
+        np.add.at(strength, np.repeat(np.arange(len(used)), used)[here], self._strength[at][here])
         linked = np.flatnonzero(strength).astype(np.int32)
         return linked, strength[linked]
 
@@ -130,8 +133,11 @@ class ViewLinks:
         """Copy the blocks without gaps into a new arena that has room for `wanted` more."""
         size = (int(self._blocks[:, 2].sum()) + wanted) * 4 // 3
         cells, strength = np.zeros(size, np.int32), np.zeros(size, np.float32)
-        self._end = _copy_blocks(self._blocks, self._cells, self._strength, cells, strength)
-        self._cells, self._strength = cells, strength
+        start, used, room = self._blocks.T
+        moved, old = np.cumsum(room) - room, in_use(start, used)
+        new = in_use(moved, used)
+        cells[new], strength[new] = self._cells[old], self._strength[old]
+        self._cells, self._strength, self._blocks[:, 0], self._end = cells, strength, moved, int(room.sum())
 
 
 @kind("visual association/2")
@@ -207,6 +213,12 @@ class Injection:
     values: Singles  # (k,) activity added to each
 
 
+def in_use(start: Ints, used: Ints) -> Ints:
+    """Where in an arena the blocks' entries in use lie, block after block."""
+    begins = np.cumsum(used) - used
+    return np.arange(int(used.sum())) + np.repeat(start - begins, used)
+
+
 @njit(cache=True, nogil=True)
 def _count_active(linked: Ints32, slot: Ints32) -> int:
     count = 0
@@ -217,42 +229,10 @@ def _count_active(linked: Ints32, slot: Ints32) -> int:
 
 
 @njit(cache=True, nogil=True)
-def _copy_blocks(blocks: Ints, old_cells: Ints32, old_strength: Singles, cells: Ints32, strength: Singles) -> int:
-    """Copy the blocks one after the other, in the order of the views; returns where the last one ends."""
-    end = 0
-    for view in range(len(blocks)):
-        start, used = blocks[view, 0], blocks[view, 1]
-        for k in range(used):
-            cells[end + k] = old_cells[start + k]
-            strength[end + k] = old_strength[start + k]
-        blocks[view, 0] = end
-        end += blocks[view, 2]
-    return end
-
-
-@njit(cache=True, nogil=True)
-def _sum_at(
-    blocks: Ints, views: int, cells: Ints32, strength: Singles, column: int, columns: int, out: Singles
-) -> None:
-    for view in range(views):
-        start, used = blocks[view, 0], blocks[view, 1]
-        for k in range(start, start + used):
-            if cells[k] % columns == column:
-                out[view] += strength[k]
-
-
-@njit(cache=True, nogil=True)
 def _learn(
-    linked: Ints32,
-    strength: Singles,
-    used: int,
-    cells: Ints32,
-    activity: Singles,
-    slot: Ints32,
-    seen: Flags,
-    eta: np.float32,
-    delta: np.float32,
-) -> int:
+    linked: Ints32, strength: Singles, used: int, cells: Ints32, activity: Singles, slot: Ints32, seen: Flags,
+    eta: np.float32, delta: np.float32,
+) -> int:  # fmt: skip
     """beta <- (1 - delta) beta + eta P in one view's block; returns how much of the block is used then."""
     n = len(cells)
     seen[:n] = False

@@ -92,18 +92,9 @@ def inject(flats: Ints32, more: Singles, cells: Cells, values: Values, n: int, s
 
 @njit(cache=True, nogil=True)
 def shift(
-    cells: Cells,
-    values: Values,
-    n: int,
-    distance: float,
-    yaw: float,
-    headings: Floats,
-    out_cells: Cells,
-    out_values: Values,
-    slot: Slot,
-    shape: Shape,
-    patch: Singles,
-) -> int:
+    cells: Cells, values: Values, n: int, distance: float, yaw: float, headings: Floats, out_cells: Cells,
+    out_values: Values, slot: Slot, shape: Shape, patch: Singles,
+) -> int:  # fmt: skip
     """P'_xyz = sum over a 2x2x2 cube of alpha_abc P. A eqs. 5-9. `slot` indexes the input, afterwards the output.
 
     distance: how far each layer moves along its own heading, headings[t] = cos, sin (cells); yaw: the turn (layers). patch:
@@ -160,16 +151,9 @@ def shift(
 
 @njit(cache=True, nogil=True)
 def cluster(
-    cells: Cells,
-    values: Values,
-    n: int,
-    shape: Shape,
-    window: int,
-    radius: int,
-    owner: Ints32,
-    peaks: Ints32,
+    cells: Cells, values: Values, n: int, shape: Shape, window: int, radius: int, owner: Ints32, peaks: Ints32,
     bounds: NDArray[np.int8],
-) -> tuple[int, int]:
+) -> tuple[int, int]:  # fmt: skip
     """Divide the active cells into clusters: repeatedly, the strongest free cell and all free cells within `window` of it.
 
     Writes the cluster of each cell to `owner`, the row of each cluster's strongest cell to `peaks`, and how far the

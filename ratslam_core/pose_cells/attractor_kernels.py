@@ -38,69 +38,35 @@ def gaussian(sigma: float, radius: int = 0) -> Singles:
 
 @njit(cache=True, nogil=True)
 def excite(
-    cells: Cells,
-    values: Values,
-    n: int,
-    owner: Ints32,
-    peaks: Ints32,
-    bounds: NDArray[np.int8],
-    out_cells: Cells,
-    out_values: Values,
-    slot: Slot,
-    shape: Shape,
-    window: int,
-    weights: Singles,
-    floor: float | np.float32,
-    box_a: Singles,
-    box_b: Singles,
-) -> tuple[int, int]:
-    """Cluster and convolve. Returns how many cells are active then, and how many the output must have room for; if it has
-    not, nothing has changed, and the first is -1."""
-    clusters, room = cluster(cells, values, n, shape, window, weights.size // 2, owner, peaks, bounds)
-    if min(room, slot.size) > len(out_cells):
-        return -1, room
-    m = convolve(
-        cells, values, n, owner, peaks, bounds, clusters, out_cells, out_values, slot, shape, weights, floor, box_a, box_b,
-    )  # fmt: skip
-    return m, room
-
-
-@njit(cache=True, nogil=True)
-def convolve(
-    cells: Cells,
-    values: Values,
-    n: int,
-    owner: Ints32,
-    peaks: Ints32,
-    bounds: NDArray[np.int8],
-    clusters: int,
-    out_cells: Cells,
-    out_values: Values,
-    slot: Slot,
-    shape: Shape,
-    weights: Singles,
-    floor: float | np.float32,
-    box_a: Singles,
-    box_b: Singles,
-) -> int:
+    cells: Cells, values: Values, n: int, owner: Ints32, peaks: Ints32, bounds: NDArray[np.int8], out_cells: Cells,
+    out_values: Values, slot: Slot, shape: Shape, window: int, weights: Singles, floor: float | np.float32,
+    box_a: Singles, box_b: Singles,
+) -> tuple[int, int]:  # fmt: skip
     """P <- eps * P: circular convolution with a 3-D Gaussian as three 1-D passes. A eq. 10.
 
-    `owner`, `peaks`, `bounds` split the active cells into clusters, each of which fits a small dense box. The boxes'
-    results add up, since convolution is linear. Cells up to `floor` are left out where no other box can add to them,
-    since inhibition would remove them at once. `slot` indexes the input, afterwards the output. box_a, box_b: scratch.
+    The active cells are split into clusters, each of which fits a small dense box. The boxes' results add up, since
+    convolution is linear. Cells up to `floor` are left out where no other box can add to them, since inhibition would
+    remove them at once. `slot` indexes the input, afterwards the output. owner, peaks, bounds, box_a, box_b: scratch.
+
+    Returns how many cells are active then, and how many the output must have room for; if it has not, nothing has
+    changed, and the first is -1.
     """
+    radius = weights.size // 2
+    clusters, room = cluster(cells, values, n, shape, window, radius, owner, peaks, bounds)
+    if min(room, slot.size) > len(out_cells):
+        return -1, room
     n_theta, n_y, n_x = shape
     clear(cells, n, slot)
-    radius = weights.size // 2
     kept = np.empty(box_a.size, np.uint32)
     m = 0
     for c in range(clusters):
         px, py, pt = cells[peaks[c], X], cells[peaks[c], Y], cells[peaks[c], THETA]
         low_x, low_y, low_t = int(bounds[c, 0]) - radius, int(bounds[c, 1]) - radius, int(bounds[c, 2]) - radius
+        more = 1 + radius
         bx, by, bt = (
-            int(bounds[c, 3]) - low_x + 1 + radius,
-            int(bounds[c, 4]) - low_y + 1 + radius,
-            int(bounds[c, 5]) - low_t + 1 + radius,
+            int(bounds[c, 3]) - low_x + more,
+            int(bounds[c, 4]) - low_y + more,
+            int(bounds[c, 5]) - low_t + more,
         )
         layer = by * bx
         size = bt * layer
@@ -132,7 +98,7 @@ def convolve(
             y: int = ys[row % depth]
             t: int = ts[row // depth]
             m = add(x, y, t, (t * n_y + y) * n_x + x, box_b[at], out_cells, out_values, m, slot)
-    return m
+    return m, room
 
 
 @njit(cache=True, nogil=True)

@@ -18,22 +18,9 @@ ROW = 6
 
 @njit(cache=True, nogil=True)
 def find(
-    cells: Cells,
-    values: Values,
-    n: int,
-    slot: Slot,
-    shape: Shape,
-    window: int,
-    owner: Ints32,
-    peaks: Ints32,
-    bounds: NDArray[np.int8],
-    headings: Floats,
-    old: Floats,
-    old_ids: Ints,
-    n_old: int,
-    new: Floats,
-    new_ids: Ints,
-) -> tuple[int, int]:
+    cells: Cells, values: Values, n: int, slot: Slot, shape: Shape, window: int, owner: Ints32, peaks: Ints32,
+    bounds: NDArray[np.int8], headings: Floats, old: Floats, old_ids: Ints, n_old: int, new: Floats, new_ids: Ints,
+) -> tuple[int, int]:  # fmt: skip
     """The packets in the activity as it is, written to `new`, each with the id of the one that was expected there.
 
     Returns how many clusters and how many packets there are; when `new` has not as many rows as there are clusters,
@@ -72,16 +59,9 @@ def join_flanks(
 
 @njit(cache=True, nogil=True)
 def packet_rows(
-    cells: Cells,
-    values: Values,
-    n: int,
-    shape: Shape,
-    owner: Ints32,
-    peaks: Ints32,
-    clusters: int,
-    headings: Floats,
+    cells: Cells, values: Values, n: int, shape: Shape, owner: Ints32, peaks: Ints32, clusters: int, headings: Floats,
     out: Floats,
-) -> int:
+) -> int:  # fmt: skip
     """Write the packets, heaviest first; returns how many. Clusters with the same peak are one. `owner` then names packets.
 
     out rows: x, y, theta (cells, fractions), mass, mean cosine and sine of the headings.
@@ -126,14 +106,6 @@ def packet_rows(
 
 
 @njit(cache=True, nogil=True)
-def _among(number: int, ids: Ints, n: int) -> bool:
-    for p in range(n):  # noqa: SIM110
-        if ids[p] == number:
-            return True
-    return False
-
-
-@njit(cache=True, nogil=True)
 def follow(
     old: Floats, old_ids: Ints, n_old: int, new: Floats, new_ids: Ints, n_new: int, shape: Shape, window: int
 ) -> None:
@@ -156,7 +128,7 @@ def follow(
     free = 1
     for q in range(n_new):
         if new_ids[q] == 0:
-            while _among(free, old_ids, n_old) or _among(free, new_ids, n_new):
+            while free in old_ids[:n_old] or free in new_ids[:n_new]:
                 free += 1
             new_ids[q] = free
 

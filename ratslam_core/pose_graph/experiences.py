@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import TypeAlias
 
 import numpy as np
 from numba import njit
@@ -12,19 +12,9 @@ from disk import kind
 from ratslam_core.params import ExperienceMapParams
 from ratslam_core.types import Floats, Ints, Ints32, Packet, Pose2
 
-
-class Zone(NamedTuple):
-    """A state of the pose cells, how far a zone of influence reaches from it, and on rings of which size."""
-
-    x: float
-    y: float
-    theta: float
-    n_theta: int
-    n_y: int
-    n_x: int
-    reach_xy: float
-    reach_theta: float
-    old: bool  # the energy of 2005
+# x', y', theta' of a state of the pose cells; layers, cells along y' and x'; how far a zone reaches, in cells and layers;
+# and whether its energy is that of 2005
+Zone: TypeAlias = tuple[float, float, float, int, int, int, float, float, bool]
 
 
 @kind("experiences/5")
@@ -66,7 +56,7 @@ class Experiences:
         return packet.x % n_x, packet.y % n_y, (packet.heading_rad * n_theta / (2 * math.pi)) % n_theta
 
     def _zone(self, packet: Packet, p: ExperienceMapParams) -> Zone:
-        return Zone(*self._state(packet), *self.shape, p.zone_xy, p.zone_theta, p.energy == "2005")
+        return *self._state(packet), *self.shape, p.zone_xy, p.zone_theta, p.energy == "2005"
 
     def cells_from(self, experience: int, packet: Packet) -> tuple[float, float, float]:
         """The packet relative to an experience's state: cells and layers, the shorter way round."""
@@ -114,9 +104,10 @@ def _apart(a: float, b: float, n: int) -> float:
 
 @njit(cache=True, nogil=True, inline="always")
 def _energy(zone: Zone, at: Floats, i: int) -> float:
-    r = math.sqrt(_apart(zone.x, at[i, 0], zone.n_x) ** 2 + _apart(zone.y, at[i, 1], zone.n_y) ** 2) / zone.reach_xy
-    q = _apart(zone.theta, at[i, 2], zone.n_theta) / zone.reach_theta
-    if zone.old:
+    x, y, theta, n_theta, n_y, n_x, reach_xy, reach_theta, old = zone
+    r = math.sqrt(_apart(x, at[i, 0], n_x) ** 2 + _apart(y, at[i, 1], n_y) ** 2) / reach_xy
+    q = _apart(theta, at[i, 2], n_theta) / reach_theta
+    if old:
         return max(1.0 - r, 0.0) + max(1.0 - q, 0.0)
     return 0.0 if r > 1.0 or q > 1.0 else 2.0 - r - q
 

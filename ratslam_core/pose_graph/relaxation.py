@@ -91,16 +91,9 @@ def sweep_by_link(poses: Floats, graph: Adjacency, links: Ints, moves: Floats, t
 
 @njit(cache=True, nogil=True)
 def _sweep_by_link(
-    poses: Floats,
-    start: Uints,
-    used: Uints,
-    halves: Uints,
-    others: Uints,
-    ends: NDArray[np.uint64],
-    moves: Floats,
-    travelled: Flags,
-    alpha: float,
-) -> None:
+    poses: Floats, start: Uints, used: Uints, halves: Uints, others: Uints, ends: NDArray[np.uint64], moves: Floats,
+    travelled: Flags, alpha: float,
+) -> None:  # fmt: skip
     turned = _turned(poses, ends, moves)
     for i in range(1, poses.shape[0]):
         block = np.uint64(start[i])

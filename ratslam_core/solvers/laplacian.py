@@ -254,16 +254,9 @@ def _factor_columns(matrix: Floats, first: int, end: int) -> bool:
 
 @njit(cache=True, nogil=True)
 def _solve(
-    order: Ints,
-    start: Ints,
-    used: Ints,
-    other: Uints,
-    weight: Floats,
-    total: Floats,
-    rest: Ints,
-    triangle: Floats,
+    order: Ints, start: Ints, used: Ints, other: Uints, weight: Floats, total: Floats, rest: Ints, triangle: Floats,
     out: Floats,
-) -> None:
+) -> None:  # fmt: skip
     for v in order:  # a node's right-hand side goes to the neighbours that it had when it was eliminated
         for q in range(start[v], start[v] + used[v]):
             share = weight[q] / total[v]

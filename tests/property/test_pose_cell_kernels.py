@@ -155,9 +155,9 @@ def test_excitation_leaves_out_what_inhibition_would_remove_and_nothing_else(
     after = cells.empty()
     side = 2 * (window + radius) + 1
     box_a, box_b = np.full((2, side**3), 5.0, np.float32)
-    after.n = attractor.convolve(
-        cells.cells, cells.values, cells.n, owner, peaks, bounds, clusters, after.cells, after.values, after.slot,
-        shape, weights, floor, box_a, box_b,
+    after.n, _ = attractor.excite(
+        cells.cells, cells.values, cells.n, owner, peaks, bounds, after.cells, after.values, after.slot, shape, window,
+        weights, floor, box_a, box_b,
     )  # fmt: skip
     assert np.abs(after.dense() - expected).max() < 1e-6
     assert np.count_nonzero(after.values[: after.n]) == after.n <= room

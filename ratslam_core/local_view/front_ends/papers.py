@@ -70,9 +70,8 @@ class ComplexCells(FrontEnd):
     shifts, scale, threshold, surprise, vague = True, 1.0, 6.0, 20.0, 0.0
 
     def look(self, image: Bytes | None, _scene: int | None = None, _ranges_m: object = None) -> Features:
-        seen = cv2.resize(grey(image), (FILTERED_WIDTH, FILTERED_HEIGHT), interpolation=cv2.INTER_AREA).astype(
-            np.float32
-        )
+        small = cv2.resize(grey(image), (FILTERED_WIDTH, FILTERED_HEIGHT), interpolation=cv2.INTER_AREA)
+        seen = small.astype(np.float32)
         around = cv2.blur(seen, (AROUND,) * 2, borderType=cv2.BORDER_REFLECT) + DARK
         features = np.empty((COLUMNS, BANDS, ORIENTATIONS), np.float32)
         for k, (even, odd) in enumerate(PAIRS):

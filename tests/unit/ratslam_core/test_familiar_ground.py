@@ -65,7 +65,7 @@ def test_a_place_becomes_familiar_when_it_is_recognised() -> None:
 def test_on_familiar_ground_an_unknown_observation_is_let_go() -> None:
     visitor = Visitor(100)
     assert not visitor.unknown()
-    assert (len(visitor.map), visitor.map.active, visitor.ground.pruned) == (1, 0, 1)
+    assert (len(visitor.map), visitor.map.active, visitor.ground.let_go["sights"]) == (1, 0, 1)
     assert visitor.map.robot.x == pytest.approx(101 * 1e-4)  # odometry goes on
 
 
@@ -104,7 +104,7 @@ def test_a_known_view_at_its_place_makes_no_experience() -> None:
     """The pose cells have drifted by five cells, but the map says that the robot is at the view's experience."""
     visitor = Visitor(1)
     assert not visitor.look(KNOWN, x=37.0)
-    assert (len(visitor.map), visitor.ground.adopted) == (1, 1)
+    assert (len(visitor.map), visitor.ground.let_go["experiences_adopted"]) == (1, 1)
     twin = ExperienceMap(SHAPE, CELL_M, EXACT)  # as in the papers
     for x, made in ((32.0, True), (32.0, False), (37.0, True)):
         assert twin.step(Packet(x, 32.0, 0.0, 1.0), KNOWN, CRAWL) is made
@@ -159,7 +159,7 @@ def test_a_place_has_room_for_so_many_views_and_the_oldest_fades(monkeypatch: py
     ground, first = visitor.ground, visitor.map.views.tolist()
     assert ground.faded == 1  # view 0 was recognised since
     assert visitor.look(Recognition(1, True, 0, 50.0, 0.0))
-    assert ground.views_faded == 1
+    assert ground.let_go["views_faded"] == 1
     assert visitor.map.views.tolist() == [first[0], -1, *first[2:], 1]
     assert ground.faded == 2
 
