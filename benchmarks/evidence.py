@@ -12,7 +12,8 @@ says. Calibrated: given a wrong place, the mean of e to that power is at most 1.
 prior: robots are carried as below. Of the places that views suggest while no hypothesis is right, some are. The prior is the
 log odds that predict how many, together with what each view says for its place.
 
-kidnaps: each robot explores, is carried 3 m or more and turned, and has two minutes. One judge, the evaluation: where
+kidnaps: each robot explores, is carried 3 m or more and turned, and has two minutes; with --turn it is turned by 90 degrees
+on the spot instead. One judge, the evaluation: where
 the active experience was made, and the robot beside it, within 1 m and 0.6 rad for half a second.
 """
 
@@ -59,6 +60,9 @@ def main() -> int:
     parser.add_argument("--first", type=int, default=0, help="the first of them (default: fit 910001, kidnaps 520000)")
     parser.add_argument("--out", type=Path, default=Path("evidence.svg"), help="of the picture")
     parser.add_argument("--minutes", type=float, default=8.0, help="of exploring before (default 8)")
+    parser.add_argument(
+        "--turn", action="store_true", help="kidnaps: turned by 90 degrees on the spot, not carried away"
+    )
     args = parser.parse_args()
     if unknown := set(args.worlds) - {name for name, _ in world_names()}:
         parser.error(f"no world is called {', '.join(sorted(unknown))}")
@@ -75,7 +79,7 @@ def main() -> int:
         elif args.what == "prior":
             _print_prior(list(zip(jobs, pool.map(_suggested, jobs), strict=True)))
         else:
-            _print_kidnaps(list(zip(jobs, pool.map(_kidnapped, jobs), strict=True)))
+            _print_kidnaps(list(zip(jobs, pool.map(_kidnapped, jobs, [args.turn] * len(jobs)), strict=True)))
     return 0
 
 
@@ -249,11 +253,11 @@ class Found:
     later_off_m: float  # ... and what it believes a minute later
 
 
-def _kidnapped(job: Job) -> Found:
+def _kidnapped(job: Job, turn: bool) -> Found:
     session = _explored(job)
     map_ = session.brain.experience_map
     known, merged = len(map_), map_.submaps.merged
-    _carry(session)
+    (_turn if turn else _carry)(session)
     right_s = merged_s = merged_off_m = later_off_m = math.inf
     right = wrong = longest = 0
     for tick in range(1, SOON + LATER + 1):
@@ -279,6 +283,11 @@ def _carry(session: Session) -> None:
         if math.hypot(x - truth.x, y - truth.y) >= 3.0:
             session.kidnap(x, y, heading)
             return
+
+
+def _turn(session: Session) -> None:
+    truth, way = session.simulator.truth, (math.pi / 2, -math.pi / 2)[session.seed % 2]
+    session.kidnap(truth.x, truth.y, truth.heading_rad + way)
 
 
 def _draw(session: Session, path: Path) -> None:

@@ -30,6 +30,7 @@ from numba.core.event import Event, Listener, register  # pyright: ignore[report
 import app.pilot.local_movement
 import ratslam_core.experience_map.places
 import ratslam_core.extensions.evidence
+import ratslam_core.extensions.odometry_edges
 import ratslam_core.goal_memory
 import ratslam_core.local_view.echo_matcher
 import ratslam_core.local_view.front_ends.image_and_sonars
@@ -233,6 +234,7 @@ def loops() -> None:
         made.evidence.move(Odometry(0.3, 0.1, 0.1))
         made.evidence.observe(made, seen_by, made.submaps.current)
     ratslam_core.extensions.evidence.nats(0.5, 0)
+    ratslam_core.extensions.odometry_edges.open_way_m(made.transitions, 0, 1)
     local = LocalMovement(_ANGLES, config.pilot.echo_s)
     RouteFollower(0, Bars()).step(made, local, 0.1, config.pilot)
     find_places(made)
@@ -246,7 +248,8 @@ PARTS: dict[str, tuple[Callable[[], None], tuple[Any, ...]]] = {
                       ratslam_core.local_view.front_ends.image_and_sonars, ratslam_core.local_view.echo_matcher,
                       ratslam_core.local_view.matcher, ratslam_core.local_view.view_links)),
     "loops": (loops, (ratslam_core.pose_graph.relaxation, ratslam_core.solvers.laplacian, ratslam_core.solvers.dijkstra,
-                      ratslam_core.extensions.evidence, ratslam_core.experience_map.places)),
+                      ratslam_core.extensions.evidence, ratslam_core.extensions.odometry_edges,
+                      ratslam_core.experience_map.places)),
     "maps": (maps, (ratslam_core.goal_memory, ratslam_core.occupancy_grid)),
 }  # fmt: skip
 

@@ -152,7 +152,6 @@ class NewGround:
     """As in the papers: every observation that is unlike all others is kept."""
 
     near = np.zeros(0, np.int64)  # no experience is known to be near
-
     familiar = False
     faded = -1
     let_go: Mapping[str, int] = MappingProxyType({})

@@ -93,7 +93,7 @@ class KidnapDetector:
 
 @kind("never kidnapped/2")
 class NeverKidnapped:
-    """As in the papers: kidnaps are not noticed."""
+    """As in the papers: kidnaps are not noticed, and the robot is never lost."""
 
     kidnapped = False
     sure = True
@@ -104,14 +104,9 @@ class NeverKidnapped:
     def observe(self, _image_change: float, _ranges_m: Floats | None, _beats: int = 1) -> bool:
         return False
 
-    def declare(self, _experiences: int) -> None:
-        """Being told changes nothing."""
-
-    def find(self) -> None:
-        """It was never lost."""
-
+    def declare(self, _experiences: int) -> None: ...
+    def find(self) -> None: ...
     def settle(self, _agrees: bool, _known: int, _beats: int = 1) -> bool:
-        """The robot is never lost."""
         return False
 
 

@@ -11,11 +11,11 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
+from numba import njit
 
 from disk import kind
 from ratslam_core.pose_graph.transitions import PreintegratedOdometry, Transitions
-from ratslam_core.types import Odometry, Pose2
+from ratslam_core.types import Flags, Floats, Ints, Odometry, Pose2
 
 
 @kind("odometry edges/2")
@@ -56,22 +56,15 @@ class OdometryEdges:
 
 @kind("no odometry edges/1")
 class NoOdometryEdges:
-    """As in the papers."""
+    """As in the papers: a transition is learnt, and nothing else remembered."""
 
-    def move(self, _moved: Pose2, _odometry: Odometry) -> None:
-        """Nothing is remembered."""
-
-    def observe(self) -> None:
-        """Nothing is remembered."""
-
-    def forget(self) -> None:
-        """There is nothing to forget."""
-
-    def made(self, _active: int, _driven: int, _transitions: Transitions, _weight_of: Callable[[float], float]) -> None:
-        """A transition is learnt, and nothing else."""
+    def move(self, _moved: Pose2, _odometry: Odometry) -> None: ...
+    def observe(self) -> None: ...
+    def forget(self) -> None: ...
+    def made(self, _active: int, _driven: int, _t: Transitions, _weight_of: Callable[[float], float]) -> None: ...
 
 
-def inflate_covariance(t: Transitions, first: int, last: int, off_m: float, sigma: float) -> NDArray[np.intp]:
+def inflate_covariance(t: Transitions, first: int, last: int, off_m: float, sigma: float) -> Ints:
     """Inflate the covariance of the odometry constraints that may be broken after experience `first`, up to `last`; returns
     their rows.
 
@@ -94,7 +87,7 @@ def open_way_m(t: Transitions, first: int, last: int) -> float:
     return float(np.hypot(t.move[rows, 0], t.move[rows, 1]).sum())
 
 
-def broken(t: Transitions, first: int, last: int) -> NDArray[np.intp]:
+def broken(t: Transitions, first: int, last: int) -> Ints:
     """The broken odometry constraints: the last stretch, between these experiences, that no loop closure bridges. What went wrong
     did not happen between places that one ties together past the gap."""
     rows = _unbridged(t, first, last)
@@ -103,12 +96,24 @@ def broken(t: Transitions, first: int, last: int) -> NDArray[np.intp]:
     return rows[apart[-1] + 1 :] if len(apart) else rows
 
 
-def _unbridged(t: Transitions, first: int, last: int) -> NDArray[np.intp]:
-    ends, chain = t.ends[: t.count], t.chain[: t.count]
-    observations = ~chain & (t.believed[: t.count] > 0)
-    bridges = np.zeros(int(ends.max(initial=0)) + 2, np.int64)
-    np.add.at(bridges, ends[observations].min(axis=1) + 1, 1)
-    np.add.at(bridges, ends[observations].max(axis=1) + 1, -1)
-    bridged = np.cumsum(bridges) > 0
-    newer = ends.max(axis=1)
-    return np.flatnonzero(chain & (newer > first) & (newer <= last) & ~bridged[newer])
+def _unbridged(t: Transitions, first: int, last: int) -> Ints:
+    return _rows_unbridged(t.ends[: t.count], t.chain[: t.count], t.believed[: t.count], first, last)
+
+
+@njit(cache=True, nogil=True)
+def _rows_unbridged(ends: Ints, chain: Flags, believed: Floats, first: int, last: int) -> Ints:
+    """Rows of odometry to an experience after the first, up to the last, past which no observation leads."""
+    bridges = np.zeros(np.max(ends) + 2 if len(ends) else 1, np.int64)
+    for row in range(len(ends)):
+        if not chain[row] and believed[row] > 0:
+            bridges[min(ends[row, 0], ends[row, 1]) + 1] += 1
+            bridges[max(ends[row, 0], ends[row, 1]) + 1] -= 1
+    bridges = np.cumsum(bridges)
+    rows = np.empty(len(ends), np.int64)
+    found = 0
+    for row in range(len(ends)):
+        newer = max(ends[row, 0], ends[row, 1])
+        if chain[row] and first < newer <= last and bridges[newer] == 0:
+            rows[found] = row
+            found += 1
+    return rows[:found]

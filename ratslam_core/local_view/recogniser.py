@@ -90,7 +90,7 @@ class LocalView:
         test_recogniser.py::test_a_view_is_compared_under_the_turn_that_is_asked_for."""
         end = self.front_end
         most, slack = (min(MOST_SHIFT, end.columns - 1), slack) if end.shifts else (0, 0)
-        shifts = np.clip(shifts, -most, most)
+        shifts = np.minimum(np.maximum(shifts, -most), most)
         return self._matcher.apart_at(self.templates, self.features, views, shifts, slack, most, end.echo_weight)
 
     @property
