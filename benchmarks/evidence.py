@@ -7,7 +7,8 @@
 
 fit: robots drive over ground that they know. How alike are the views near where they truly are, and those near a wrong
 place that looked right one or two units of way before? The logarithm of the ratio of both shares is what an observation
-says. Calibrated: given a wrong place, the mean of e to that power is at most 1.
+says. Calibrated: given a wrong place, the mean of e to that power is at most 1. Each world is asked with the curves that the
+other worlds give, too.
 
 prior: robots are carried as below. Of the places that views suggest while no hypothesis is right, some are. The prior is the
 log odds that predict how many, together with what each view says for its place.
@@ -25,7 +26,7 @@ from __future__ import annotations
 import argparse
 import math
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import astuple, dataclass
 from pathlib import Path
@@ -35,7 +36,8 @@ from numpy.typing import NDArray
 
 from app.config import Config
 from app.session import Session
-from ratslam_core.extensions.evidence import CEILING, LIKE, LIKENESS, ODDS, PRIOR, RINGS, UNITS, nats
+from ratslam_core.extensions.evidence import AGAINST, CEILING, FOR, LIKE, LIKENESS, NATS, ODDS, PRIOR, RINGS, UNITS
+from ratslam_core.local_view.front_ends import FRONT_ENDS
 from ratslam_core.types import Pose2, wrap_angles
 from sim2d import load_world, world_names
 
@@ -49,7 +51,7 @@ NEAR_RIGHT_M, NEAR_RIGHT_RAD, STAYS = 1.0, 0.6, 6  # ticks
 SOON, LATER = 1200, 600  # ticks in which it is to be found; and after which a wrong merge is asked for once more
 
 Rows = NDArray[np.float64]
-Job = tuple[str, int, float]  # world, seed, minutes of exploring
+Job = tuple[str, int, float, str]  # world, seed, minutes of exploring, front end
 
 
 def main() -> int:
@@ -63,19 +65,20 @@ def main() -> int:
     parser.add_argument(
         "--turn", action="store_true", help="kidnaps: turned by 90 degrees on the spot, not carried away"
     )
+    parser.add_argument("--front-end", default="image and sonars", choices=list(FRONT_ENDS), help="of the local view")
     args = parser.parse_args()
     if unknown := set(args.worlds) - {name for name, _ in world_names()}:
         parser.error(f"no world is called {', '.join(sorted(unknown))}")
     first = args.first or (SEEDS[0] if args.what == "fit" else 520_000)
     seeds = range(first, first + (args.seeds or (len(SEEDS) if args.what == "fit" else 10)))
-    jobs = [(world, seed, args.minutes) for world in args.worlds or WORLDS for seed in seeds]
+    jobs = [(world, seed, args.minutes, args.front_end) for world in args.worlds or WORLDS for seed in seeds]
     if args.what == "picture":
         _draw(_explored(jobs[0]), args.out)
         return 0
     with ProcessPoolExecutor(os.cpu_count()) as pool:
         if args.what == "fit":
             told = list(pool.map(_likenesses, jobs))
-            _print_fit([(world, rows) for (world, _, _), rows in zip(jobs, told, strict=True)])
+            _print_fit([(job[0], rows) for job, rows in zip(jobs, told, strict=True)])
         elif args.what == "prior":
             _print_prior(list(zip(jobs, pool.map(_suggested, jobs), strict=True)))
         else:
@@ -103,7 +106,9 @@ class _Wrong:
 
 def _likenesses(job: Job) -> Rows:
     """Rows: 1 for the true place, 0 for a wrong one; then the likeness of the nearest views of each ring, NaN for none."""
-    session = _explored(job)
+    session = _explored(
+        job, **{"pilot.seek": False}
+    )  # else it would seek new ground, where there is nothing to compare with
     map_, view = session.brain.experience_map, session.brain.local_view
     births, kept = session.evaluation.births(len(map_)), map_.views.copy()
     rows: list[list[float]] = []
@@ -170,12 +175,13 @@ def _print_fit(told: Sequence[tuple[str, Rows]]) -> None:
     for ring, (near_m, near_rad) in enumerate(RINGS):
         print(f"{near_m:.1f} m, {near_rad:.2f} rad:  " + " ".join(f"{said:5.1f}" for said in _curve(everything, ring)))
     print(
-        "\nin use, in each world: nats for the true place, against it, mean of e^nats at wrong places (calibrated: at most 1)"
+        "\nnats at the true place, at wrong ones, mean of e^nats there (calibrated: <= 1); again by the others' curves"
     )
     for world in dict.fromkeys(name for name, _ in told):
-        rows = np.concatenate([found for name, found in told if name == world])
-        right, wrong = (np.array(list(_said(rows[rows[:, 0] == kind]))) for kind in (1.0, 0.0))
-        print(f"{world:10s} {right.mean():5.2f} {wrong.mean():5.2f} {np.exp(wrong).mean():5.2f}")
+        own = np.concatenate([rows for name, rows in told if name == world])
+        others = [rows for name, rows in told if name != world] or [own]
+        left_out = np.array([_curve(np.concatenate(others), ring) for ring in range(len(RINGS))])
+        print(f"{world:10s} {_calibration(own, NATS)}   {_calibration(own, left_out)}")
 
 
 def _curve(rows: Rows, ring: int) -> Rows:
@@ -187,11 +193,15 @@ def _curve(rows: Rows, ring: int) -> Rows:
     return np.log(shares[0] / shares[1])
 
 
-def _said(rows: Rows) -> Iterator[float]:
-    for row in rows:
-        for ring, likeness in enumerate(row[1:]):
-            if not math.isnan(likeness):
-                yield float(nats(likeness, ring))
+def _calibration(rows: Rows, curves: Rows) -> str:
+    """What the observations say for the true places, and for the wrong ones, by these curves, one for each ring."""
+    told = ~np.isnan(rows[:, 1:])
+    said = np.zeros(told.shape)
+    for ring in range(len(curves)):
+        said[:, ring] = np.interp(rows[:, 1 + ring], LIKENESS, curves[ring])
+    nats: Rows = np.clip(said, AGAINST, FOR)[told]
+    true: NDArray[np.bool_] = np.repeat(rows[:, :1] == 1.0, len(curves), axis=1)[told]
+    return f"{nats[true].mean():5.2f} {nats[~true].mean():5.2f} {np.exp(nats[~true]).mean():5.2f}"
 
 
 # ---------------------------------------------------------------- how likely a suggested place is
@@ -335,9 +345,10 @@ def _print_kidnaps(found: Sequence[tuple[Job, Found]]) -> None:
         )
 
 
-def _explored(job: Job) -> Session:
-    world, seed, minutes = job
-    session = Session(load_world(world), seed, Config().with_values(OFF))
+def _explored(job: Job, **values: float | int | bool | str) -> Session:
+    world, seed, minutes, front_end = job
+    values = {**OFF, "local_view.front_end": front_end, **values}
+    session = Session(load_world(world), seed, Config().with_values(values))
     for _ in range(round(minutes * 600)):
         session.tick()
     return session
