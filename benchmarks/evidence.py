@@ -151,7 +151,8 @@ class _Looking:
             if any(not math.isnan(likeness) for likeness in found) or not len(which):
                 found.append(math.nan)  # a nearer ring counts, or there is nothing
                 continue
-            shifts = np.rint(turn[which] / self._view.column_rad).astype(np.int64)
+            columns = turn[which] / self._view.column_rad if self._view.column_rad > 0 else 0.0 * turn[which]
+            shifts = np.rint(columns).astype(np.int64)
             found.append(float(self._view.apart_at(self._known[which], shifts, 2)[0].min()) / self._usual)
         return found
 
