@@ -95,6 +95,7 @@ class Motion:
             self._awaited = None
         elif before is None or (before.x, before.y) != (goal.x, goal.y):
             self._awaited = goal.x, goal.y
+            self._replay.stop()  # whoever sends it somewhere wants to see the way
         if self._awaited is not None and goal is not None and len(goal.route_xy) > 1:
             self._awaited = None
             self._run = _Way(self._map.fit.to_plate(np.asarray(goal.route_xy, np.float64)), now_s, RUN_S)

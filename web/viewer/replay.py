@@ -5,6 +5,8 @@ It is drawn on the plate only. The session goes on meanwhile, or stands, and its
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -40,6 +42,10 @@ class Replay:
 
     def start(self, closure: Closure, now_s: float) -> None:
         self._closure, self._began_s, self._due_s = closure, now_s, now_s
+
+    def stop(self) -> None:
+        """It is over with the next `draw`."""
+        self._began_s = -math.inf
 
     def draw(self, now_s: float) -> bool:
         """Draws this moment of it. True when it is over, so that the map as it is must be drawn again."""

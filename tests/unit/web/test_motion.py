@@ -35,6 +35,20 @@ def test_a_new_correction_is_played_once_at_a_speed_at_which_one_watches(
     assert not runs(stage)
 
 
+def test_a_new_goal_ends_a_correction_that_is_played_and_its_route_is_seen(stage: Bench) -> None:
+    snapshot = at_speed(fake_snapshot(430), 1.0)
+    assert snapshot.goal is not None
+    (closure,) = closing().closures
+    plain = replace(snapshot, goal=None, closures=())
+    stage.show(plain, 10.0)
+    stage.show(replace(plain, tick=plain.tick + 1, closures=(closure,)), 0.1)
+    stage.show(replace(plain, tick=plain.tick + 2, closures=(closure,)), 1.0)
+    assert runs(stage)
+    stage.show(replace(plain, tick=plain.tick + 3, closures=(closure,), goal=snapshot.goal), 0.1)
+    stage.show(replace(plain, tick=plain.tick + 4, closures=(closure,), goal=snapshot.goal), 0.2)
+    assert not runs(stage)
+
+
 def test_the_map_stands_still_for_a_while_between_two_corrections(stage: Bench) -> None:
     """One that comes meanwhile is missed; the next one after it is played."""
     plain = at_speed(closing(), 1.0)
