@@ -55,6 +55,12 @@ def test_where_it_will_be_is_drawn_on_the_plan_and_on_the_map_which_lies_as_on_i
         then = program.wait(lambda state: state["lesson"]["prediction"] != first)["lesson"]["prediction"]
         moved_rad = math.atan2(then["y"] - first["y"], then["x"] - first["x"]) + turn_rad
         assert math.remainder(moved_rad - math.pi / 2, math.tau) == pytest.approx(0, abs=0.01)
+        with open_page(browser, program.url, stage=False) as other:
+            other.goto(f"{program.url}docs")
+            other.goto(f"{program.url}#lesson={name}")
+            expect(other.locator("#lesson-title")).to_have_text(find_lesson(name).title)
+            until(other, "() => !location.hash")
+            assert program.state()["lesson"]["prediction"] == then  # who opens the link, too, joins the lesson
         page.click("#lesson-show")
         is_in(page, name, "showing")
         program.command("set_speed", factor=0)

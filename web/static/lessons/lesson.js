@@ -49,6 +49,9 @@ export class Lesson {
     this.robot = null;
     this.rate = 0.1; // seconds a tick
     this.invitation = new Invitation();
+    /** @type {string | null} */
+    this.wanted = null; // the lesson that the address names, until it is known what goes on
+    this.heard = false;
     $("lesson-show").addEventListener("click", () => this.go());
     $("lesson-again").addEventListener("click", () => this.ask({ type: "lesson_again" }));
     $("lesson-next").addEventListener("click", () => this.next());
@@ -61,18 +64,27 @@ export class Lesson {
     link.addEventListener("hello", () => this.follow());
   }
 
-  /** Begins the lesson that the address names. */
+  /** Begins the lesson that the address names, unless it goes on already: a class that opens one link is in one lesson. */
   follow() {
     const name = linked(location.hash);
     if (!name || this.link.watches) return;
     history.replaceState(null, "", location.pathname + location.search); // loaded again, the page shows the lesson as it is
-    this.list.begin(name);
+    this.wanted = name;
+    if (this.heard) this.begin();
+  }
+
+  begin() {
+    const name = this.wanted;
+    this.wanted = null;
+    if (name && this.now?.name !== name) this.list.begin(name);
   }
 
   /** @param {State} state */
   at({ lesson, tick, time_s, robot, estimate }) {
     const before = this.now;
     this.now = lesson;
+    this.heard = true;
+    this.begin();
     this.robot = lesson?.draws === "map" ? estimate : robot;
     if (tick > 0) this.rate = time_s / tick;
     if (!lesson) {
