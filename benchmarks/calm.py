@@ -2,13 +2,14 @@
 
 It opens the page as a newcomer would and, three simulated minutes later, as somebody who knows it, at the sizes of a laptop, a
 lecture hall and a phone. It counts controls and words that can be seen, and how much of each plate is covered by what lies on the
-stage. With a folder it leaves a picture of each there.
+stage. With a folder it leaves a picture of each there, and the two of the README: on the way to a place, and just after a kidnap.
 """
 
 from __future__ import annotations
 
 import argparse
 import sys
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -20,7 +21,7 @@ from tests.e2e.layout import IN_SIGHT
 from tests.e2e.program import Program
 
 BAR = 18
-MINUTES = 3
+MINUTES, README_MINUTES = 3, 16
 STRIDE = 300  # ticks that one request may ask for
 
 
@@ -35,6 +36,22 @@ class Sight:
     first: bool = False
     keys: str = ""  # pressed before the look
     level: str = "watch"
+    story: Callable[[Program], None] | None = None  # what happens before
+
+
+def to_the_library(program: Program) -> None:
+    """On its way, after sixteen minutes."""
+    walk(program, 600 * README_MINUTES)
+    (library,) = (place for place in program.places()["named"] if place["name"] == "library")
+    program.command("set_goal", x=library["x"], y=library["y"])
+    program.command("step", ticks=10)
+
+
+def kidnapped(program: Program) -> None:
+    """Half a second after it was carried to the other side of the office."""
+    walk(program, 600 * README_MINUTES + 300)
+    program.command("kidnap", x=2.0, y=3.0, heading_rad=0.0)
+    program.command("step", ticks=5)
 
 
 SIGHTS = [
@@ -50,6 +67,8 @@ SIGHTS = [
     Sight("explore", 1280, 720, level="explore"),
     Sight("lab", 1280, 720, level="lab"),
     Sight("lab-hall", 1920, 1080, level="lab"),
+    Sight("readme", 1440, 900, light=True, level="explore", story=to_the_library),
+    Sight("kidnapped", 1280, 720, story=kidnapped),
 ]
 
 
@@ -62,8 +81,10 @@ def main(folder: Path | None, only: str | None) -> int:
             for sight in sorted(SIGHTS, key=lambda sight: not sight.first):
                 if only not in (None, sight.name):
                     continue
-                if not sight.first:
-                    explore(program)
+                if sight.story is not None:
+                    sight.story(program)
+                elif not sight.first:
+                    walk(program, 600 * MINUTES)
                 controls, words = look(browser, program, sight, folder)
                 print(f"{sight.name:18} {len(controls):3} controls, {words:3} words: {', '.join(controls)}", flush=True)
                 if sight.name == "first-visit":
@@ -75,9 +96,9 @@ def main(folder: Path | None, only: str | None) -> int:
     return int(most > BAR)
 
 
-def explore(program: Program) -> None:
-    """Let the robot know some of the office."""
-    while (missing := 600 * MINUTES - program.state()["tick"]) > 0:
+def walk(program: Program, until: int) -> None:
+    """Let the robot know some of the office, up to this tick."""
+    while (missing := until - program.state()["tick"]) > 0:
         program.command("step", ticks=min(missing, STRIDE))
 
 
@@ -88,6 +109,9 @@ def look(browser: Browser, program: Program, sight: Sight, folder: Path | None) 
         if sight.keys:
             page.keyboard.press(sight.keys)
         settle(page)
+        if sight.story is not None and (hint := page.get_by_role("button", name="Dismiss")).is_visible():
+            hint.click()  # that there is no graphics card
+            settle(page)
         if folder is not None:
             folder.mkdir(parents=True, exist_ok=True)
             page.screenshot(path=folder / f"{sight.name}.jpg", type="jpeg", quality=85)
