@@ -49,6 +49,8 @@ def to_the_library(program: Program) -> None:
 
 def kidnapped(program: Program) -> None:
     """Half a second after it was carried to the other side of the office."""
+    program.command("cancel_goal")
+    program.command("set_mode", mode="explore")
     walk(program, 600 * README_MINUTES + 300)
     program.command("kidnap", x=2.0, y=3.0, heading_rad=0.0)
     program.command("step", ticks=5)

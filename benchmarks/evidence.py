@@ -14,8 +14,8 @@ prior: robots are carried as below. Of the places that views suggest while no hy
 log odds that predict how many, together with what each view says for its place.
 
 kidnaps: each robot explores, is carried 3 m or more and turned, and has two minutes; with --turn it is turned by 90 degrees
-on the spot instead. One judge, the evaluation: where
-the active experience was made, and the robot beside it, within 1 m and 0.6 rad for half a second.
+on the spot instead. One judge, the evaluation: where the active experience was made, and the robot beside it, within 1 m
+and 0.6 rad for half a second.
 """
 
 # matplotlib tells no types.
@@ -58,8 +58,8 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=(__doc__ or "").split("\n\n")[0])
     parser.add_argument("what", choices=("fit", "prior", "kidnaps", "picture"))
     parser.add_argument("worlds", nargs="*", metavar="WORLD", help="default: " + ", ".join(WORLDS))
-    parser.add_argument("--seeds", type=int, default=0, help="how many in each world (default: fit 2, kidnaps 10)")
-    parser.add_argument("--first", type=int, default=0, help="the first of them (default: fit 910001, kidnaps 520000)")
+    parser.add_argument("--seeds", type=int, default=0, help="how many in each world (default: fit 2, others 10)")
+    parser.add_argument("--first", type=int, default=0, help="the first of them (default: fit 910001, others 520000)")
     parser.add_argument("--out", type=Path, default=Path("evidence.svg"), help="of the picture")
     parser.add_argument("--minutes", type=float, default=8.0, help="of exploring before (default 8)")
     parser.add_argument(
@@ -106,9 +106,8 @@ class _Wrong:
 
 def _likenesses(job: Job) -> Rows:
     """Rows: 1 for the true place, 0 for a wrong one; then the likeness of the nearest views of each ring, NaN for none."""
-    session = _explored(
-        job, **{"pilot.seek": False}
-    )  # else it would seek new ground, where there is nothing to compare with
+    # Along walls, over the same ground again and again: else it would seek new ground, where there is nothing to compare with.
+    session = _explored(job, **{"pilot.seek": False})
     map_, view = session.brain.experience_map, session.brain.local_view
     births, kept = session.evaluation.births(len(map_)), map_.views.copy()
     rows: list[list[float]] = []
@@ -180,9 +179,9 @@ def _print_fit(told: Sequence[tuple[str, Rows]]) -> None:
     )
     for world in dict.fromkeys(name for name, _ in told):
         own = np.concatenate([rows for name, rows in told if name == world])
-        others = [rows for name, rows in told if name != world] or [own]
-        left_out = np.array([_curve(np.concatenate(others), ring) for ring in range(len(RINGS))])
-        print(f"{world:10s} {_calibration(own, NATS)}   {_calibration(own, left_out)}")
+        others = [rows for name, rows in told if name != world]
+        curves = [_curve(np.concatenate(others), ring) for ring in range(len(RINGS) if others else 0)]
+        print(f"{world:10s} {_calibration(own, NATS)}   {_calibration(own, np.array(curves)) if others else '-'}")
 
 
 def _curve(rows: Rows, ring: int) -> Rows:
@@ -214,11 +213,13 @@ def _suggested(job: Job) -> Rows:
     map_, frame = session.brain.experience_map, session.evaluation.map_in_office(session.brain.experience_map)
     _carry(session)
     rows: list[tuple[float, float]] = []
+    before = np.zeros(0)  # log odds; those of a place that was not weighed stay as they are
     for _ in range(SOON):
         session.tick()
         hypotheses = map_.evidence.hypotheses
         right = _right(hypotheses, frame.inverse().compose(Pose2(*astuple(session.simulator.truth)[:3])))
         new = (hypotheses[:, UNITS] == 1.0) & np.isfinite(hypotheses[:, CEILING])
+        new, before = new & ~np.isin(hypotheses[:, ODDS], before), hypotheses[:, ODDS].copy()
         if not map_.carried or right[~new].any():
             break
         rows += zip(right[new].astype(float), hypotheses[new, ODDS] - PRIOR, strict=True)
@@ -233,21 +234,26 @@ def _right(rows: Rows, truth: Pose2) -> NDArray[np.bool_]:
 def _print_prior(told: Sequence[tuple[Job, Rows]]) -> None:
     print("world        places suggested   right   prior that predicts so many   without this world")
     for world in dict.fromkeys(job[0] for job, _ in told):
-        own, others = (np.concatenate([r for job, r in told if (job[0] == world) == its]) for its in (True, False))
-        rest = f"{_prior(others):.2f}" if len(others) else "-"
-        print(f"{world:12s} {len(own):16d} {int(own[:, 0].sum()):7d} {_prior(own):29.2f} {rest:>20s}")
-    everything = np.concatenate([rows for _, rows in told])
-    print(f"all          {len(everything):16d} {int(everything[:, 0].sum()):7d} {_prior(everything):29.2f}")
+        own, others = (_those([r for job, r in told if (job[0] == world) == its]) for its in (True, False))
+        print(f"{world:12s} {len(own):16d} {int(own[:, 0].sum()):7d} {_prior(own):>29s} {_prior(others):>20s}")
+    everything = _those([rows for _, rows in told])
+    print(f"all          {len(everything):16d} {int(everything[:, 0].sum()):7d} {_prior(everything):>29s}")
 
 
-def _prior(rows: Rows) -> float:
-    """The log odds for which the expected number of right places is the one that was found, by halving."""
+def _those(rows: Sequence[Rows]) -> Rows:
+    return np.concatenate([np.zeros((0, 2)), *rows])
+
+
+def _prior(rows: Rows) -> str:
+    """The log odds for which the expected number of right places is the one that was found, by halving; "-" if none was."""
+    if not rows[:, 0].any():
+        return "-"
     low, high = -20.0, 20.0
     for _ in range(60):
         middle = (low + high) / 2
         expected = float(np.sum(1 / (1 + np.exp(-(middle + rows[:, 1])))))
         low, high = (middle, high) if expected < rows[:, 0].sum() else (low, middle)
-    return (low + high) / 2
+    return f"{low:.2f}"
 
 
 # ---------------------------------------------------------------- kidnaps

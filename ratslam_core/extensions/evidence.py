@@ -2,8 +2,8 @@
 
 Hypotheses of where the robot is move by its odometry, as packets do, and each observation weighs them. How like the
 views near a hypothesis are to what is seen, in units of how like views are anyway, tells how many times likelier this
-observation is there than at a wrong place that looked right a metre before: `RINGS`, the outcome of
-`python -m benchmarks.evidence`. Neighbouring observations repeat each other, so a metre or a radian of way counts as one
+observation is there than at a wrong place that looked right a metre before: `NATS`, beside its fit of today in
+`python -m benchmarks.evidence fit`. Neighbouring observations repeat each other, so a metre or a radian of way counts as one
 unit of evidence; and since wrong places can stay alike for longer, a unit takes a share of what was gathered away.
 Beside all hypotheses stands that of a new place, for and against which nothing speaks.
 

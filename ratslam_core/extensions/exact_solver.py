@@ -19,7 +19,6 @@ test_graduated_trust.py::test_false_closures_are_found_out. With `experience_map
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from disk import kind
 from ratslam_core.pose_graph import relaxation
@@ -163,9 +162,7 @@ def kept(poses: Floats, ends: Ints, moves: Floats, weights: Floats, sure: Flags,
     return share, work
 
 
-def contradiction(
-    poses: Floats, ends: Ints, moves: Floats, weights: Floats, rows: NDArray[np.intp], cell_m: float
-) -> Floats:
+def contradiction(poses: Floats, ends: Ints, moves: Floats, weights: Floats, rows: Ints, cell_m: float) -> Floats:
     """How far the map contradicts each of these rows, as a share of the bar: a row above 1 is one to give up."""
     ex, ey, turn = disagreement(poses, ends[rows], moves[rows]).T
     variance = (STEP_SIGMA * cell_m) ** 2 / weights[rows] + (SIGMA * cell_m) ** 2

@@ -15,11 +15,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from disk import kind
 from ratslam_core.pose_graph.transitions import Transitions
-from ratslam_core.types import Floats, Ints32, Pose2
+from ratslam_core.types import Floats, Ints, Ints32, Pose2
 
 SURER = 0.01  # nats that each cell driven adds to the odds of a merge, as long as nothing contradicts it
 
@@ -76,7 +75,7 @@ class Submaps:
         move(np.arange(self.last_merge.first, len(poses)), poses, robot, claimed)
 
 
-def move(which: NDArray[np.intp], poses: Floats, robot: Pose2, claimed: Pose2) -> None:
+def move(which: Ints, poses: Floats, robot: Pose2, claimed: Pose2) -> None:
     """Move these experiences in the map, in place and as a whole, so that `robot` comes to `claimed`."""
     way = claimed.compose(robot.inverse())
     for i in which:

@@ -82,8 +82,9 @@ def _evidence(evidence: Evidence, n: int, submaps: int) -> None:
 
 
 def _ground(ground: FamiliarGround, n: int, views: int) -> None:
-    for name in FamiliarGround().let_go:
-        whole(name, ground.let_go.get(name))
+    true(ground.let_go.keys() == FamiliarGround().let_go.keys(), "what was let go must be counted by its kinds")
+    for name, count in ground.let_go.items():
+        whole(name, count)
     share = array("shares", ground._share, np.float64, (None,))
     true(len(share) >= n, "each experience must have a share of recognised observations")
     within("a share", share, 0.0, 1.0)

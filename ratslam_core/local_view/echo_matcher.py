@@ -9,7 +9,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from ratslam_core.local_view.matcher import SIZE, Features, Matcher, shift_all, sum_apart
-from ratslam_core.types import Bytes, Floats, Uints
+from ratslam_core.types import Bytes, Floats, Uints32
 
 FARTHEST = 1e5  # no two views are that far apart
 
@@ -83,7 +83,7 @@ class EchoMatcher(Matcher):
 @njit(cache=True, nogil=True)
 def _nearest(
     known: Bytes, new: Features, most: int, columns: int, rows: int, echoes: int, weight: float, guess: int,
-    shifted: Bytes, masks: Bytes, echoes_of: Bytes, total: NDArray[np.int16], kept: Uints,
+    shifted: Bytes, masks: Bytes, echoes_of: Bytes, total: NDArray[np.int16], kept: Uints32,
 ) -> tuple[int, float, int]:  # fmt: skip
     tried, widths = shift_all(new, most, columns, rows, shifted)
     size = columns * rows
@@ -116,7 +116,7 @@ def _sum_echoes(echoes_of: Bytes, heard: Bytes, n: int, total: NDArray[np.int16]
 
 
 @njit(cache=True, nogil=True)
-def _keep_near(total: NDArray[np.int16], n: int, echoes: int, weight: float, limit: float, kept: Uints) -> Uints:
+def _keep_near(total: NDArray[np.int16], n: int, echoes: int, weight: float, limit: float, kept: Uints32) -> Uints32:
     """The views, in their order, whose echoes alone are no farther than the limit. Without a branch, as none can be foreseen."""
     most = 0
     while most < 255 * echoes and weight * ((most + 1) / echoes) <= limit:
@@ -130,7 +130,7 @@ def _keep_near(total: NDArray[np.int16], n: int, echoes: int, weight: float, lim
 
 @njit(cache=True, nogil=True, inline="always")
 def _search(
-    known: Bytes, near: Uints, echo_sums: NDArray[np.int16], echoes: int, shifted: Bytes, masks: Bytes,
+    known: Bytes, near: Uints32, echo_sums: NDArray[np.int16], echoes: int, shifted: Bytes, masks: Bytes,
     widths: Floats, weight: float, half: int, size: int, limit: float,
 ) -> tuple[int, float, int]:  # fmt: skip
     """Of these views, the nearest that is no farther than `limit`. Among equals the first shift wins, then the first view."""

@@ -198,7 +198,7 @@ class LocalView:
             self._matcher.replaced(faded, features)
             return faded
         if self._count == len(self._templates):
-            half = self._count // 2  # as many again, which keeps a view below 150 bytes
+            half = self._count // 2  # half as many again, which keeps a view below 150 bytes
             more = np.zeros((half, features.size), np.uint8)
             self._templates = np.concatenate([self._templates, more])
         self._templates[self._count] = features

@@ -13,7 +13,7 @@ from disk import kind
 from ratslam_core.pose_graph.pose_graph import PoseGraph, disagreement, wrapped
 from ratslam_core.pose_graph.transitions import Adjacency
 from ratslam_core.solvers.laplacian import eliminate
-from ratslam_core.types import Flags, Floats, Ints, Uints
+from ratslam_core.types import Flags, Floats, Ints, Uints32
 
 DIVERGED = 10.0  # times the length of all links together: where no map that fits them puts an experience
 LARGEST = 4000  # experiences in a densely linked core; a map with more is left to the sweeps: 4,000 take 2 s and 250 MB
@@ -52,7 +52,14 @@ def sweep(poses: Floats, graph: Adjacency, moves: Floats, weights: Floats, alpha
 
 @njit(cache=True, nogil=True)
 def _sweep(
-    poses: Floats, start: Uints, used: Uints, halves: Uints, others: Uints, moves: Floats, weights: Floats, gain: float
+    poses: Floats,
+    start: Uints32,
+    used: Uints32,
+    halves: Uints32,
+    others: Uints32,
+    moves: Floats,
+    weights: Floats,
+    gain: float,
 ) -> None:
     """dx_i, dy_i, dth_i = gain times the weighted sum of the links' residuals over the sum of the weights. B eqs. 12-14."""
     n, one = np.uint64(poses.shape[0]), np.uint64(1)
@@ -91,7 +98,7 @@ def sweep_by_link(poses: Floats, graph: Adjacency, links: Ints, moves: Floats, t
 
 @njit(cache=True, nogil=True)
 def _sweep_by_link(
-    poses: Floats, start: Uints, used: Uints, halves: Uints, others: Uints, ends: NDArray[np.uint64], moves: Floats,
+    poses: Floats, start: Uints32, used: Uints32, halves: Uints32, others: Uints32, ends: NDArray[np.uint64], moves: Floats,
     travelled: Flags, alpha: float,
 ) -> None:  # fmt: skip
     turned = _turned(poses, ends, moves)

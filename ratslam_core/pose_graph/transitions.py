@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from disk import kind
 from ratslam_core.params import ExperienceMapParams
-from ratslam_core.types import IDENTITY, Flags, Floats, Ints, Odometry, Pose2, Uints, pose_of, wrap_angle
+from ratslam_core.types import IDENTITY, Flags, Floats, Ints, Odometry, Pose2, Uints32, pose_of, wrap_angle
 
 BEHAVIOURS = 16
 ROOM = 4  # half-edges that a new node has room for
@@ -116,7 +116,7 @@ class Transitions:
         self._close(row)
         return True
 
-    def let_go(self, rows: NDArray[np.intp]) -> None:
+    def let_go(self, rows: Ints) -> None:
         """These rows tie nothing any more, and are no ways. They have not failed, so they are not among the `dropped`."""
         for row in rows.tolist():
             if self.travelled[row]:
@@ -253,7 +253,7 @@ class Adjacency:
         """How many half-edges there are at a node."""
         return int(self.used[node])
 
-    def at(self, node: int) -> tuple[Uints, Uints]:
+    def at(self, node: int) -> tuple[Uints32, Uints32]:
         """Half-edges at a node and the nodes at their other ends, in the order of creation. Views."""
         block = slice(int(self.start[node]), int(self.start[node]) + int(self.used[node]))
         return self.half[block], self.other[block]

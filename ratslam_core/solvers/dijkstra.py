@@ -15,13 +15,13 @@ from typing import Any, TypeAlias
 import numpy as np
 from numba import njit
 
-from ratslam_core.types import Floats, Ints, Ints32, Uints
+from ratslam_core.types import Floats, Ints, Ints32, Uints32
 
 # start, used, half, other of an `Adjacency`, and the seconds of each row, inf for no way
-Links: TypeAlias = tuple[Uints, Uints, Uints, Uints, Floats]
+Links: TypeAlias = tuple[Uints32, Uints32, Uints32, Uints32, Floats]
 # poses, reach (m, 0 = no shortcuts), pace (s/m), and the grid of `buckets`
 Near: TypeAlias = tuple[Floats, float, float, Ints32, Ints32]
-Heap: TypeAlias = tuple[Floats, Uints]  # times, the least first, and the node of each
+Heap: TypeAlias = tuple[Floats, Uints32]  # times, the least first, and the node of each
 Whole: TypeAlias = int | np.integer[Any]
 LEAST_S = 1e-3  # no link takes less, so that no way leads round in circles
 

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numba import njit
 
-from ratslam_core.types import Floats, Ints, Uints
+from ratslam_core.types import Floats, Ints, Uints32
 
 SPARE = 2  # neighbours that a node has room for at first, in addition to its own
 DENSE = 8  # the rest is dense when each of its nodes is linked to an eighth of it or more
@@ -47,7 +47,7 @@ class Elimination(NamedTuple):
     order: Ints  # the eliminated nodes, in order; node 0 is fixed and not among them
     start: Ints
     used: Ints
-    other: Uints  # unsigned: compiled code need not test for negative indices
+    other: Uints32  # unsigned: compiled code need not test for negative indices
     weight: Floats
     total: Floats  # (n,) sum of the weights, 0 for a node without links
     rest: Ints  # (k,) nodes of the dense rest
@@ -66,7 +66,7 @@ class Elimination(NamedTuple):
 
 @njit(cache=True, nogil=True)
 def _eliminate(n: int, links: Ints, weights: Floats, dense: int) -> tuple[Any, ...]:
-    other: Uints
+    other: Uints32
     start, room, used, other, weight, end = _net(n, links, weights)
     where = np.zeros(n, np.uint32)
     first, after, before = np.full(n + 1, -1), np.full(n, -1), np.full(n, -1)  # nodes by how many neighbours they have
@@ -113,7 +113,7 @@ def _eliminate(n: int, links: Ints, weights: Floats, dense: int) -> tuple[Any, .
 
 
 @njit(cache=True, nogil=True)
-def _net(n: int, links: Ints, weights: Floats) -> tuple[Ints, Ints, Ints, Uints, Floats, int]:
+def _net(n: int, links: Ints, weights: Floats) -> tuple[Ints, Ints, Ints, Uints32, Floats, int]:
     """Each node's neighbours in one arena: start, room and use of each block, neighbours, weights; and the arena's end."""
     start, room = np.zeros(n, np.int64), np.full(n, SPARE)
     for row in range(len(links)):
@@ -134,7 +134,7 @@ def _net(n: int, links: Ints, weights: Floats) -> tuple[Ints, Ints, Ints, Uints,
 
 
 @njit(cache=True, nogil=True)
-def _join(i: int, j: int, more: float, start: Ints, used: Ints, other: Uints, weight: Floats) -> None:
+def _join(i: int, j: int, more: float, start: Ints, used: Ints, other: Uints32, weight: Floats) -> None:
     """Make j a neighbour of i, or add to the weight between them."""
     for q in range(start[i], start[i] + used[i]):
         if other[q] == j:
@@ -145,7 +145,7 @@ def _join(i: int, j: int, more: float, start: Ints, used: Ints, other: Uints, we
 
 
 @njit(cache=True, nogil=True)
-def _leave(i: int, j: int, start: Ints, used: Ints, other: Uints, weight: Floats) -> None:
+def _leave(i: int, j: int, start: Ints, used: Ints, other: Uints32, weight: Floats) -> None:
     """Remove j from the neighbours of i."""
     q, last = start[i], start[i] + used[i] - 1
     while other[q] != j:
@@ -156,7 +156,7 @@ def _leave(i: int, j: int, start: Ints, used: Ints, other: Uints, weight: Floats
 
 @njit(cache=True, nogil=True)
 def _meet(
-    a: int, others: Uints, parts: Floats, share: float, own: Uints, own_weight: Floats, count: int, where: Uints
+    a: int, others: Uints32, parts: Floats, share: float, own: Uints32, own_weight: Floats, count: int, where: Uints32
 ) -> int:
     """Make these others neighbours of a, too, with this share of their weights; returns how many neighbours a has now."""
     for q in range(count):
@@ -194,7 +194,7 @@ def _take(v: int, count: int, first: Ints, after: Ints, before: Ints) -> None:
 
 
 @njit(cache=True, nogil=True)
-def _matrix(n: int, rest: Ints, start: Ints, used: Ints, other: Uints, weight: Floats) -> Floats:
+def _matrix(n: int, rest: Ints, start: Ints, used: Ints, other: Uints32, weight: Floats) -> Floats:
     at = np.full(n, -1)
     for k in range(len(rest)):
         at[rest[k]] = k
@@ -254,7 +254,7 @@ def _factor_columns(matrix: Floats, first: int, end: int) -> bool:
 
 @njit(cache=True, nogil=True)
 def _solve(
-    order: Ints, start: Ints, used: Ints, other: Uints, weight: Floats, total: Floats, rest: Ints, triangle: Floats,
+    order: Ints, start: Ints, used: Ints, other: Uints32, weight: Floats, total: Floats, rest: Ints, triangle: Floats,
     out: Floats,
 ) -> None:  # fmt: skip
     for v in order:  # a node's right-hand side goes to the neighbours that it had when it was eliminated

@@ -53,7 +53,7 @@ class Motion:
         self._last: Snapshot | None = None
         self._lift: _Way | None = None
         self._run: _Way | None = None
-        self._awaited: tuple[float, float] | None = None  # a new goal whose route has not come yet
+        self._awaits = False  # there is a new goal whose route has not come yet
         self._rests_until_s = 0.0
         palette = self._map.palette
         disc = meshes.flat_polygon(meshes.circle(0.3), RUN_Z)
@@ -92,12 +92,12 @@ class Motion:
     def _await_route(self, last: Snapshot, now: Snapshot, now_s: float) -> None:
         before, goal = last.goal, now.goal
         if goal is None:
-            self._awaited = None
-        elif before is None or (before.x, before.y) != (goal.x, goal.y):
-            self._awaited = goal.x, goal.y
+            self._awaits = False
+        elif before is None or before.experience != goal.experience:  # its place moves with each correction of the map
+            self._awaits = True
             self._replay.stop()  # whoever sends it somewhere wants to see the way
-        if self._awaited is not None and goal is not None and len(goal.route_xy) > 1:
-            self._awaited = None
+        if self._awaits and goal is not None and len(goal.route_xy) > 1:
+            self._awaits = False
             self._run = _Way(self._map.fit.to_plate(np.asarray(goal.route_xy, np.float64)), now_s, RUN_S)
 
     def _carry(self, now: Snapshot, now_s: float) -> None:

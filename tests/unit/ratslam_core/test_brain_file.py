@@ -135,6 +135,10 @@ MAP, GRAPH, KNOWN = "experience_map", "experience_map.transitions.graph", "exper
         (write("local_view._templates", 5), "must be a ndarray, got a int"),
         (write("local_view.recognition.view", 800), "the recognised view must be a whole number from -1 to"),
         (put(f"{KNOWN}.pose", (0, 0), np.nan), "a place in the map must be from"),
+        (
+            write(f"{MAP}.ground.let_go", {"number": 10**6, "dict": [["sights", "?"]]}),
+            "what was let go must be counted by its kinds",
+        ),
         (put(f"{KNOWN}.view", 0, 500), "an experience's view must be from -1 to"),
         (put(f"{GRAPH}.other", 0, 2**32 - 1), "an other end must be from 0 to"),
         (put(f"{GRAPH}.half", 0, 2**31), "each transition must have its two half-edges"),

@@ -49,6 +49,19 @@ def test_a_new_goal_ends_a_correction_that_is_played_and_its_route_is_seen(stage
     assert not runs(stage)
 
 
+def test_a_goal_that_moves_with_the_map_ends_no_correction_and_begins_no_dot_anew(stage: Bench) -> None:
+    snapshot = at_speed(fake_snapshot(430), 1.0)
+    goal, (closure,) = snapshot.goal, closing().closures
+    assert goal is not None
+    stage.show(replace(snapshot, closures=()), 10.0)
+    stage.show(replace(snapshot, closures=()), RUN_S + REST_S)
+    for k in range(1, 6):
+        moved = replace(goal, x=goal.x + 0.01 * k, y=goal.y - 0.01 * k)
+        stage.show(replace(snapshot, tick=snapshot.tick + k, closures=(closure,), goal=moved), 0.2)
+        assert not stage.visible("/map/runner")
+    assert runs(stage)
+
+
 def test_the_map_stands_still_for_a_while_between_two_corrections(stage: Bench) -> None:
     """One that comes meanwhile is missed; the next one after it is played."""
     plain = at_speed(closing(), 1.0)
