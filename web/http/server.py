@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import logging
 import signal
 import socket
 import sys
@@ -148,6 +149,10 @@ class Dashboard:
             self._latest, self._submit, self._viewers, self._port, self._offered, self._experiments, self._exports,
             self._opener, self._situations, self._lessons, self.classroom,
         )  # fmt: skip
+
+
+# After its second of grace uvicorn calls it an error that a browser reads nothing. Whoever ends the program need not know.
+logging.getLogger("uvicorn.error").addFilter(lambda record: "graceful shutdown exceeded" not in str(record.msg))
 
 
 def _config(app: ASGIApp, lifespan: Literal["auto", "off"] = "auto") -> uvicorn.Config:
