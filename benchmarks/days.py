@@ -23,7 +23,6 @@ from app.protocol.steps import spread_goals
 from app.session import Session
 from sim2d import load_world, world_names
 
-HOUR_S = 3600
 GOALS = 10  # of one round over the map
 FARTHEST_M = 100.0  # a way behind a door that is shut counts as so long
 NEAR_M = 1.0
@@ -47,28 +46,29 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("worlds", nargs="*", default=["office", "living", "campus"], metavar="WORLD")
     parser.add_argument("--hours", type=int, default=10)
+    parser.add_argument("--minutes", type=float, default=60.0, help="that an hour lasts, fewer for a quick look")
     parser.add_argument("--seed", type=int, default=9631)
     args = parser.parse_args()
     if unknown := set(args.worlds) - {name for name, _ in world_names()}:
         parser.error(f"no world is called {', '.join(sorted(unknown))}")
     print("world      hour   views  experiences   links   memory     tick      map  goals reached")
     with ProcessPoolExecutor(min(os.cpu_count() or 1, len(args.worlds)), max_tasks_per_child=1) as pool:
-        runs = [pool.submit(days, world, args.seed, args.hours) for world in args.worlds]
+        runs = [pool.submit(days, world, args.seed, args.hours, 60 * args.minutes) for world in args.worlds]
         for world, run in zip(args.worlds, runs, strict=True):
             tell(world, run.result())
     return 0
 
 
-def days(world: str, seed: int, hours: int) -> list[Hour]:
+def days(world: str, seed: int, hours: int, hour_s: float) -> list[Hour]:
     session = Session(load_world(world), seed, Config())
     told: list[Hour] = []
     for hour in range(1, hours + 1):
         began, ticks, course = time.process_time(), session.tick_count, Course(session)
         if hour == 1:
-            while session.time_s < HOUR_S:
+            while session.time_s < hour_s:
                 session.tick()
         else:
-            run_ticks(course, goal_after_goal(course, hour * HOUR_S))
+            run_ticks(course, goal_after_goal(course, hour * hour_s))
         map_, visits = session.brain.experience_map, course.visits
         memory_mb, tick_ms = psutil.Process().memory_info().rss / 1e6, 1e3 * (time.process_time() - began)
         now = Hour(

@@ -91,6 +91,7 @@ SMALLEST = {
     "evidence": "kidnaps loop --seeds 1 --minutes 0.5", "keeping": "loop 400 1",
     "exploring": "loop --minutes 0.5 --seeds 1 --workers 1",
     "killed_runs": "--count 1 --replay 1", "latency": "--count 2", "lessons": "--times 1 --no-tests",
+    "days": "loop --hours 3 --minutes 1",
     "moments": "--hours 0.01 --count 3", "mutants": "--count 0", "newcomer": "74",
     "page_cost": "--seconds 1 --after 1 --only traffic", "random_drive": "--hours 0.01 loop",
     "recognition": "loop --minutes 0.5 --seeds 401 --rows {row}", "recordings": "--data {data} --only office",
