@@ -15,7 +15,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from disk import kind
-from ratslam_core.types import Floats, Packet, Pose2, Singles, require_finite, wrap_angle
+from ratslam_core.types import Floats, Packet, Pose2, Singles, grown, require_finite, wrap_angle
 
 HALF_BEAM_RAD = math.radians(15) / 2  # of a sonar; Moravec and Elfes
 DEPTH_M = 0.1  # how far off an echo may be; Moravec and Elfes
@@ -98,8 +98,7 @@ class MapGrid:
         x, y = require_finite("local.x", local.x), require_finite("local.y", local.y)
         heading = require_finite("local.heading_rad", local.heading_rad)
         while experience >= len(self._count):
-            self._scans = np.concatenate([self._scans, np.zeros_like(self._scans)])
-            self._count = np.concatenate([self._count, np.zeros_like(self._count)])
+            self._scans, self._count = grown(self._scans), grown(self._count)
         count = int(self._count[experience])
         newest = self._scans[experience, (count - 1) % KEPT]
         moved = math.hypot(x - newest[0], y - newest[1]) > SAME_M

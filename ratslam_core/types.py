@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +19,13 @@ Ints32: TypeAlias = NDArray[np.int32]
 Uints32: TypeAlias = NDArray[np.uint32]
 Bytes: TypeAlias = NDArray[np.uint8]
 Flags: TypeAlias = NDArray[np.bool_]
+
+
+def grown(array: NDArray[Any], rows: int = 0) -> NDArray[Any]:
+    """A copy with so many rows, or twice as many. The new ones are 0, and take no memory before they are used."""
+    more = np.zeros((rows or 2 * len(array), *array.shape[1:]), array.dtype)
+    more[: len(array)] = array
+    return more
 
 
 def wrap_angle(angle_rad: float) -> float:

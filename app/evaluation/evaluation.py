@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from app.evaluation.agreement import alignment, rmse, steady_alignment
 from disk import kind
 from ratslam_core import CellsOnly, ExperienceMap, Odometry, Pose2, wrap_angles
+from ratslam_core.types import grown
 from sim2d import Truth
 
 REVISIT_AGE_S = 20.0  # an active experience that was made longer ago than this counts as revisited
@@ -50,8 +51,7 @@ class Evaluation:
     ) -> None:
         """Record one tick. created: whether the active experience was made in it."""
         if self._count == len(self._rows):
-            self._rows = np.concatenate([self._rows, np.zeros_like(self._rows)])
-            self._experience = np.concatenate([self._experience, np.zeros_like(self._experience)])
+            self._rows, self._experience = grown(self._rows), grown(self._experience)
         step, turn = odometry.speed * odometry.dt, odometry.yaw_rate * odometry.dt
         self._odometry = self._odometry.compose(Pose2(step * math.cos(turn / 2), step * math.sin(turn / 2), turn))
         local = experiences.local_pose

@@ -25,7 +25,7 @@ from ratslam_core.extensions import evidence
 from ratslam_core.extensions.pose_filter import PoseFilter
 from ratslam_core.extensions.submaps import Submaps
 from ratslam_core.pose_graph.transitions import Transitions
-from ratslam_core.types import Floats, Ints, Ints32, Odometry, Recognition
+from ratslam_core.types import Floats, Ints, Ints32, Odometry, Recognition, grown
 
 ENOUGH = 0.5  # a place is familiar when the shares of recognised observations of the experiences there add up to this
 OBSERVATIONS = 20  # over which that share is averaged
@@ -115,8 +115,7 @@ class FamiliarGround:
         one counts.
         """
         while len(map_) > len(self._share):
-            self._share = np.concatenate([self._share, np.zeros_like(self._share)])
-            self._unseen = np.concatenate([self._unseen, np.zeros_like(self._unseen)])
+            self._share, self._unseen = grown(self._share), grown(self._unseen)
         self.let_go["views_faded"] += seen.recruited and seen.view == self.faded
         if not odometry.still and (seen.view >= 0 or seen.familiar):
             hit = map_.agrees and not (created or self._let_go)

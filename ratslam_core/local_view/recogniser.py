@@ -17,7 +17,7 @@ from ratslam_core.local_view.front_ends import FRONT_ENDS, FrontEnd
 from ratslam_core.local_view.matcher import Features, Matcher, heard_apart, least_difference, sub_column, turned_apart
 from ratslam_core.params import LocalViewParams
 from ratslam_core.parts import Room
-from ratslam_core.types import Bytes, Floats, Ints, Recognition, nothing_seen
+from ratslam_core.types import Bytes, Floats, Ints, Recognition, grown, nothing_seen
 
 NOTHING = -1
 TURN_SLACK = 0.3  # share of the turn by which the wheels may be wrong about it in a beat
@@ -198,9 +198,9 @@ class LocalView:
             self._matcher.replaced(faded, features)
             return faded
         if self._count == len(self._templates):
-            half = self._count // 2  # half as many again, which keeps a view below 150 bytes
-            more = np.zeros((half, features.size), np.uint8)
-            self._templates = np.concatenate([self._templates, more])
+            self._templates = grown(
+                self._templates, self._count * 3 // 2
+            )  # half as many again: a view stays below 150 bytes
         self._templates[self._count] = features
         self._count += 1
         return self._count - 1

@@ -16,7 +16,7 @@ from disk import kind
 from ratslam_core.params import LocalViewParams
 from ratslam_core.parts import PoseCellsPart
 from ratslam_core.pose_cells.activity_kernels import FLAT
-from ratslam_core.types import Flags, Ints, Ints32, Recognition, Singles
+from ratslam_core.types import Flags, Ints, Ints32, Recognition, Singles, grown
 
 LOST = 0.5  # what all links of a view inject together while the robot knows that it is lost
 
@@ -113,7 +113,7 @@ class ViewLinks:
 
     def _make_room(self, view: int, active: int, slot: Ints32) -> None:
         while view >= len(self._blocks):
-            self._blocks = np.concatenate([self._blocks, np.zeros_like(self._blocks)])
+            self._blocks = grown(self._blocks)
         if active > len(self._seen):
             self._seen = np.zeros(2 * active, np.bool_)
         start, used, room = self._blocks[view].tolist()

@@ -20,7 +20,7 @@ from ratslam_core.params import PoseCellParams
 from ratslam_core.pose_cells import activity_kernels as kernels
 from ratslam_core.pose_cells import attractor_kernels as attractor
 from ratslam_core.pose_cells import packet_kernels
-from ratslam_core.types import Ints32, Packet, Singles, require_finite, wrap_angle
+from ratslam_core.types import Ints32, Packet, Singles, grown, require_finite, wrap_angle
 
 MAX_PACKETS = 8  # reported; all are tracked
 Cell = TypeVar("Cell", np.int32, np.float32, np.int8)
@@ -206,14 +206,9 @@ class PoseCells:
         wanted = min(wanted, self._slot.size)
         if wanted <= len(self._cells):
             return
-        extra = max(wanted, 2 * len(self._cells)) - len(self._cells)
-
-        def grow(array: NDArray[Cell]) -> NDArray[Cell]:
-            return np.concatenate([array, np.zeros((extra, *array.shape[1:]), array.dtype)])
-
-        self._cells, self._values, self._bounds = grow(self._cells), grow(self._values), grow(self._bounds)
-        self._spare_cells, self._spare_values = grow(self._spare_cells), grow(self._spare_values)
-        self._owner, self._peaks = grow(self._owner), grow(self._peaks)
+        rows = max(wanted, 2 * len(self._cells))
+        for name in ("_cells", "_values", "_bounds", "_spare_cells", "_spare_values", "_owner", "_peaks"):
+            setattr(self, name, grown(getattr(self, name), rows))
 
     def _find(self) -> None:
         """Find the packets in the activity as it is now. Each has the id of the one that was expected there."""

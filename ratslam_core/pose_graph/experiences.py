@@ -10,7 +10,7 @@ from numba import njit
 
 from disk import kind
 from ratslam_core.params import ExperienceMapParams
-from ratslam_core.types import Floats, Ints, Ints32, Packet, Pose2
+from ratslam_core.types import Floats, Ints, Ints32, Packet, Pose2, grown
 
 # x', y', theta' of a state of the pose cells; layers, cells along y' and x'; how far a zone reaches, in cells and layers;
 # and whether its energy is that of 2005
@@ -34,8 +34,7 @@ class Experiences:
         """One more experience; returns its number."""
         if self.count == len(self.pose):
             for name in ("pose", "at", "view", "submap"):
-                array = getattr(self, name)
-                setattr(self, name, np.concatenate([array, np.zeros_like(array)]))
+                setattr(self, name, grown(getattr(self, name)))
         i = self.count
         self.pose[i] = pose.x, pose.y, pose.heading_rad
         self.at[i], self.view[i], self.submap[i] = self._state(packet), view, submap

@@ -12,15 +12,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
 from disk import kind
 from ratslam_core.params import ExperienceMapParams
-from ratslam_core.types import IDENTITY, Flags, Floats, Ints, Odometry, Pose2, Uints32, pose_of, wrap_angle
+from ratslam_core.types import IDENTITY, Flags, Floats, Ints, Odometry, Pose2, Uints32, grown, pose_of, wrap_angle
 
 BEHAVIOURS = 16
 ROOM = 4  # half-edges that a new node has room for
@@ -77,7 +75,7 @@ class Transitions:
             return row
         if self.count == len(self.ends):
             for name in _COLUMNS:
-                setattr(self, name, _double(getattr(self, name)))
+                setattr(self, name, grown(getattr(self, name)))
         self.count += 1
         return self.count - 1
 
@@ -226,7 +224,7 @@ class Adjacency:
 
     def add_node(self) -> None:
         if self._nodes == len(self.start):
-            self.start, self.used, self._room = _double(self.start), _double(self.used), _double(self._room)
+            self.start, self.used, self._room = grown(self.start), grown(self.used), grown(self._room)
         self.start[self._nodes], self._room[self._nodes] = self._reserve(ROOM), ROOM
         self._nodes += 1
         self.changes += 1
@@ -272,7 +270,7 @@ class Adjacency:
     def _reserve(self, room: int) -> int:
         """Reserve room at the end of the arena; returns where it begins."""
         while self._end + room > len(self.half):
-            self.half, self.other = _double(self.half), _double(self.other)
+            self.half, self.other = grown(self.half), grown(self.other)
         self._end += room
         return self._end - room
 
@@ -287,7 +285,3 @@ class Adjacency:
         for block in self.at(node):
             block[place:-1] = block[place + 1 :].copy()
         self.used[node] -= 1
-
-
-def _double(array: NDArray[Any]) -> NDArray[Any]:
-    return np.concatenate([array, np.zeros_like(array)])

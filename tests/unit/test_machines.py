@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import json
 import os
+import platform
 import shutil
 import stat
 import subprocess
@@ -41,6 +42,32 @@ for words in json.loads(sys.argv[1]):
     loaded = sorted(set(json.loads(sys.argv[2])) & set(sys.modules))
     assert not loaded, f"{words} loads {loaded}"
 """
+
+
+@pytest.mark.skipif(platform.libc_ver()[0] != "glibc", reason="others hold nothing back")
+def test_a_large_array_that_is_freed_goes_back_to_the_system() -> None:
+    """After one of 30 MB, glibc would take those of 20 MB from its heap, where what is allocated later holds them."""
+    held = """
+import sys
+if sys.argv[1] == "ours":
+    import ratslam_live
+import numpy, psutil
+large = numpy.ones(30 << 17)
+del large
+before, small = psutil.Process().memory_info().rss, []
+for _ in range(5):
+    large = numpy.ones(20 << 17)
+    small.append(numpy.ones(1000))
+    del large
+print((psutil.Process().memory_info().rss - before) >> 20)
+"""
+    mb = {
+        whose: int(
+            subprocess.run([sys.executable, "-c", held, whose], capture_output=True, check=True, cwd=ROOT).stdout
+        )
+        for whose in ("ours", "usual")
+    }
+    assert mb["ours"] < 5 < 15 < mb["usual"]
 
 
 def test_commands_that_need_no_kernel_load_none(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
