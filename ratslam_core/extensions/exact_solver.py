@@ -25,8 +25,8 @@ from ratslam_core.pose_graph import relaxation
 from ratslam_core.pose_graph.pose_graph import STEP_SIGMA, TURN_CELLS, PoseGraph, disagreement
 from ratslam_core.types import Flags, Floats, Ints
 
-MOST_SWEPT = 8000  # experiences a beat, on average: a larger map is swept in every second beat, or third ...
-WORK_A_STEP = 1e5  # of exact corrections, on average over the beats; so much takes about half a millisecond
+MOST_SWEPT = 1000  # experiences a beat, on average: a larger map is swept in every second beat, or third ...
+WORK_A_STEP = 4e4  # of exact corrections, on average over the beats; so much takes about a fifth of a millisecond
 TRIAL = 36.0  # sigma squared; all loop closures are put on trial when the map leaves one of them farther off
 
 
