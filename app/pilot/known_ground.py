@@ -2,7 +2,8 @@
 sonars saw from there. Where they saw open floor that it never drove on, the map is thin.
 
 test_known_ground.py::{test_open_floor_that_was_never_driven_on_is_an_opening, test_what_was_driven_on_is_no_opening,
-test_an_opening_is_tried_again_later, test_what_lies_on_another_submap_hides_no_opening}.
+test_what_it_sees_ahead_look_after_look_is_an_opening, test_an_opening_is_tried_again_later,
+test_what_lies_on_another_submap_hides_no_opening}.
 """
 
 from __future__ import annotations
@@ -12,12 +13,13 @@ from numpy.typing import NDArray
 
 from disk import kind
 from ratslam_core import ExperienceMap
+from ratslam_core.types import grown
 
 OLD_AFTER_S = 60.0  # an experience is old ground when it was made so long ago
 PLACE_REACH_M = 1.5  # a visit to a place counts for all experiences this near
 OPENING_M = 2.0  # sonars that see as far as this see open floor ...
 OPENING_GAP_M, OPENING_MOST_M = 0.7, 2.5  # ... whose place is so much before the echo, and at most so far away
-OPENING_BEAMS = 3  # must have seen an opening
+OPENING_BEAMS = 3  # must have seen an opening, from experiences, or in as many looks in a row from where the robot is
 OPENING_AGAIN_S = 120.0  # one that has been tried is tried again after this time, after twice as long the next time
 THIN_M = 0.8  # the map is thin where no experience is about this near
 UNSEEN_M2 = 5.0  # so much new ground is expected behind each opening, beside what is seen of it
@@ -27,7 +29,7 @@ ABOUT = 2  # ... which counts for places within so many times THIN_M
 _Array = NDArray[np.float64]
 
 
-@kind("known ground/3")
+@kind("known ground/4")
 class KnownGround:
     """Rows belong to the experiences, by number."""
 
@@ -38,6 +40,9 @@ class KnownGround:
         self._last_s = np.zeros(0)  # when the robot was last there
         self._made_s = np.zeros(0)
         self._seen_m = np.zeros((0, len(self._angles)), np.float32)  # sonar ranges where the experience was made
+        self._latest = np.zeros(
+            (OPENING_BEAMS, len(self._angles)), np.float32
+        )  # the last sonar ranges, the newest last
         # Openings that have been tried: m, in an experience's frame; and until when they are left alone, s.
         self._done: list[tuple[int, float, float, float]] = []
         self.now_s = self.new_m = 0.0  # time; distance driven since the robot was last on old ground
@@ -54,6 +59,7 @@ class KnownGround:
         """The robot drove `way_m` and is at the active experience."""
         self.now_s += dt
         self.new_m += way_m
+        self._latest = np.concatenate([self._latest[1:], ranges_m[None]])
         if len(experiences) == 0:
             return
         if len(experiences) < self.count:  # another map
@@ -75,9 +81,7 @@ class KnownGround:
         if count <= len(self._last_s):
             return
         for name in ("_last_s", "_made_s", "_seen_m"):
-            array = getattr(self, name)
-            more = np.zeros((2 * count - len(array), *array.shape[1:]), array.dtype)
-            setattr(self, name, np.concatenate([array, more]))
+            setattr(self, name, grown(getattr(self, name), 2 * count))
 
     def been_at(self, x: float, y: float, poses: _Array) -> None:
         """The robot was at this place of the map, whichever way it faced."""
@@ -97,22 +101,40 @@ class KnownGround:
         """Experiences (k,), the places (k, 2), m, map frame, that were seen from there and never driven on, and how much
         new ground is expected about each, (k,), m².
 
-        least: so many beams must have seen a place; a single one may be a false echo. Only what lies on the robot's own
-        submap counts: where the others lie to it is unknown.
+        least: so many beams must have seen a place; a single one may be a false echo. One that sees it look after look from
+        where the robot is counts as so many: in a corridor no other looks ahead. Only what lies on the robot's own submap
+        counts: where the others lie to it is unknown.
         """
-        poses, submaps = experiences.poses[: self.count], experiences.submap_of[: self.count]
+        submaps = experiences.submap_of[: self.count]
         own = submaps == submaps[experiences.active]
-        rows, beams = np.nonzero((self._seen_m[: self.count] >= OPENING_M) & own[:, None])
-        free_m = self._seen_m[rows, beams].astype(np.float64) - OPENING_GAP_M
-        heading = poses[rows, 2] + self._angles[beams]
-        way = np.stack([np.cos(heading), np.sin(heading)], axis=1)
-        places = poses[rows, :2] + np.minimum(free_m, OPENING_MOST_M)[:, None] * way
-        beyond = [poses[rows[far], :2] + metres * way[far] for metres in BEYOND_M for far in [free_m >= metres]]
+        rows, begin, bearing, free_m, looks = self._beams(experiences, own, least)
+        along = np.column_stack([np.minimum(free_m, OPENING_MOST_M), np.tile(BEYOND_M, (len(rows), 1))])
+        k, at = np.nonzero(along <= free_m[:, None])
+        heading, metres = begin[k, 2] + bearing[k], along[k, at]
+        places = begin[k, :2] + np.stack([metres * np.cos(heading), metres * np.sin(heading)], axis=1)
         done = [tried[:3] for tried in self._done if own[tried[0]] and tried[3] > self.now_s]
-        known = np.concatenate([poses[own, :2], placed(done, poses)])
-        often, area = _new_ground(np.concatenate([places, *beyond]), known, least)
-        often, area = often[: len(places)], area[: len(places)]
-        return rows[often].astype(np.int64), places[often], area[often] + UNSEEN_M2
+        known = np.concatenate([experiences.poses[: self.count][own, :2], placed(done, experiences.poses)])
+        often, area = _new_ground(places, known, looks[k], least)
+        often &= at == 0
+        return rows[k[often]], places[often], area[often] + UNSEEN_M2
+
+    def _beams(
+        self, experiences: ExperienceMap, own: NDArray[np.bool_], least: int
+    ) -> tuple[NDArray[np.int64], _Array, _Array, _Array, NDArray[np.int64]]:
+        """The beams that see open floor, one from each experience and those of now: from which experience, (k,), and place,
+        (k, 3); where to (rad, left positive) and how far (m); and as how many looks each counts."""
+        rows, beams = np.nonzero((self._seen_m[: self.count] >= OPENING_M) & own[:, None])
+        now_m, robot = self._latest.min(axis=0), experiences.robot
+        now = np.flatnonzero(now_m >= OPENING_M)
+        here = np.tile((robot.x, robot.y, robot.heading_rad), (len(now), 1))
+        seen_m = np.concatenate([self._seen_m[rows, beams], now_m[now]]).astype(np.float64)
+        return (
+            np.concatenate([rows, np.full(len(now), experiences.active)]).astype(np.int64),
+            np.concatenate([experiences.poses[rows], here]),
+            self._angles[np.concatenate([beams, now])],
+            seen_m - OPENING_GAP_M,
+            np.repeat([1, least], [len(rows), len(now)]),
+        )
 
 
 def placed(points: list[tuple[int, float, float]], poses: _Array) -> _Array:
@@ -125,9 +147,11 @@ def placed(points: list[tuple[int, float, float]], poses: _Array) -> _Array:
     return np.stack([x + c * rows[:, 1] - s * rows[:, 2], y + s * rows[:, 1] + c * rows[:, 2]], axis=1)
 
 
-def _new_ground(places: _Array, known: _Array, least: int) -> tuple[NDArray[np.bool_], _Array]:
-    """Which of the places (k, 2) lie farther than THIN_M (to twice that) from all known ones (n, 2), where at least so many
-    do; and how much of such ground, m², lies within `ABOUT` cells of each."""
+def _new_ground(
+    places: _Array, known: _Array, looks: NDArray[np.int64], least: int
+) -> tuple[NDArray[np.bool_], _Array]:
+    """Which of the places (k, 2) lie farther than THIN_M (to twice that) from all known ones (n, 2), where those seen in so
+    many looks (k,) add up to `least`; and how much of such ground, m², lies within `ABOUT` cells of each."""
     if not len(places):
         return np.zeros(0, np.bool_), np.zeros(0)
     both = np.concatenate([places, known])
@@ -137,7 +161,7 @@ def _new_ground(places: _Array, known: _Array, least: int) -> tuple[NDArray[np.b
     cells = np.floor((both - low) / THIN_M).astype(np.int64)
     mine, theirs = tuple(cells[: len(places)].T), tuple(cells[len(places) :].T)
     old[theirs] = True
-    np.add.at(seen, mine, 1)
+    np.add.at(seen, mine, looks)
     new = ~_spread(old, 1) & (seen >= least)
     area = THIN_M**2 * _summed(new.astype(np.float64), ABOUT)
     return new[mine], area[mine]

@@ -10,6 +10,7 @@ import pytest
 from app.pilot.known_ground import (
     OLD_AFTER_S,
     OPENING_AGAIN_S,
+    OPENING_BEAMS,
     OPENING_MOST_M,
     PLACE_REACH_M,
     THIN_M,
@@ -60,6 +61,21 @@ def test_open_floor_that_was_never_driven_on_is_an_opening() -> None:
         _, left = openings(ground, map_)
         assert 0 < len(left) < len(places)
         assert np.hypot(left[:, 0] - 1.5 - x, left[:, 1] - OPENING_MOST_M - y).min() > THIN_M
+
+
+def test_what_it_sees_ahead_look_after_look_is_an_opening() -> None:
+    """In a corridor a single beam looks ahead. An echo that goes and comes, as of somebody who passes, makes none."""
+    ahead = np.array([*NEAR[:3], 4.0, *NEAR[4:]], np.float32)
+    for looks, found in ((1, False), (OPENING_BEAMS - 1, False), (OPENING_BEAMS, True)):
+        ground, map_ = driven([(0.0, 0.0)], NEAR)
+        map_.robot = Pose2(1.0, 0.0, 0.5)
+        for ranges in (ahead, ahead, NEAR, *looks * [ahead]):
+            ground.step(map_, ranges, 0.0, DT)  # type: ignore[arg-type]
+        rows, places = openings(ground, map_)
+        bearing = 0.5 + ANGLES[3]
+        there = (1.0 + OPENING_MOST_M * math.cos(bearing), OPENING_MOST_M * math.sin(bearing))
+        assert rows.tolist() == found * [0]
+        assert places == pytest.approx(np.array(found * [there]).reshape(-1, 2))
 
 
 def test_how_much_new_ground_lies_about_an_opening_is_known() -> None:

@@ -117,7 +117,7 @@ def test_consistency_is_the_longest_time_off() -> None:
 def test_false_and_true_snaps_are_all_snaps() -> None:
     """Where a single look moves the packet, and it was carried unseen, it jumps often."""
     eager: dict[str, Any] = {"local_view__learning_rate": 0.15, "local_view__saturation": 0.02, "local_view__rest": 0.0}
-    explore, carried = Explore(do="explore", minutes=3), Kidnap(do="kidnap", least_m=3)
+    explore, carried = Explore(do="explore", minutes=6), Kidnap(do="kidnap", least_m=3)
     scores, course = measured(
         ["false_snaps"], explore, carried, explore, world="office", seed=2, kidnap__enabled=False, **eager
     )

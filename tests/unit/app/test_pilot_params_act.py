@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import fields
+from dataclasses import fields, replace
 from functools import cache
 
 import numpy as np
@@ -41,7 +41,7 @@ def a_run(p: PilotParams, world: World, map_: HandMadeMap | None = None, seed: i
 
 
 def exploring(p: PilotParams) -> Trace:
-    run = a_run(p, room(side=6.0, start=(3.0, 3.0, 0.0)), seed=2)
+    run = a_run(replace(p, seek=False), room(side=6.0, start=(3.0, 3.0, 0.0)), seed=2)
     for _ in range(1200):
         run.tick()
         yield run.truth
