@@ -40,9 +40,7 @@ class KnownGround:
         self._last_s = np.zeros(0)  # when the robot was last there
         self._made_s = np.zeros(0)
         self._seen_m = np.zeros((0, len(self._angles)), np.float32)  # sonar ranges where the experience was made
-        self._latest = np.zeros(
-            (OPENING_BEAMS, len(self._angles)), np.float32
-        )  # the last sonar ranges, the newest last
+        self._latest = np.zeros((OPENING_BEAMS, len(self._angles)), np.float32)  # sonar ranges, the newest last
         # Openings that have been tried: m, in an experience's frame; and until when they are left alone, s.
         self._done: list[tuple[int, float, float, float]] = []
         self.now_s = self.new_m = 0.0  # time; distance driven since the robot was last on old ground
