@@ -198,9 +198,8 @@ class LocalView:
             self._matcher.replaced(faded, features)
             return faded
         if self._count == len(self._templates):
-            self._templates = grown(
-                self._templates, self._count * 3 // 2
-            )  # half as many again: a view stays below 150 bytes
+            half_as_many_again = self._count * 3 // 2  # a view stays below 150 bytes
+            self._templates = grown(self._templates, half_as_many_again)
         self._templates[self._count] = features
         self._count += 1
         return self._count - 1

@@ -10,7 +10,7 @@ integration), are pulled by recognised scenes (visual calibration) and compete (
 from __future__ import annotations
 
 import math
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,7 +23,6 @@ from ratslam_core.pose_cells import packet_kernels
 from ratslam_core.types import Ints32, Packet, Singles, grown, require_finite, wrap_angle
 
 MAX_PACKETS = 8  # reported; all are tracked
-Cell = TypeVar("Cell", np.int32, np.float32, np.int8)
 WINDOW = 6  # cells: half-width of the window that holds one packet
 ROOM = 4096  # active cells there is room for at first; grows when needed
 
