@@ -27,7 +27,7 @@ from app.pilot import Mode, Pilot, PilotParams
 from app.pilot.bars import Bar, Bars
 from app.pilot.behaviours import Behaviour
 from app.pilot.explore import Explorer, Turn
-from app.pilot.known_ground import OPENING_BEAMS, KnownGround
+from app.pilot.known_ground import LOOKS, KnownGround
 from app.pilot.opening import Opening
 from app.pilot.route_following import RouteFollower
 from app.pilot.seeking import Seeker
@@ -264,7 +264,7 @@ def _seeker(seeker: Seeker, experiences: int) -> None:
     array("times of making", ground._made_s, np.float64, (rows,))
     seen = array("what was seen of the ground", ground._seen_m, np.float32, (rows, len(SONAR_ANGLES_RAD)))
     within("what was seen of the ground", seen, 0.0, FAR_M)
-    latest = array("the latest looks", ground._latest, np.float32, (OPENING_BEAMS, len(SONAR_ANGLES_RAD)))
+    latest = array("the latest looks", ground._latest, np.float32, (LOOKS, len(SONAR_ANGLES_RAD)))
     within("the latest looks", latest, 0.0, FAR_M)
     for name, value in (("time", ground.now_s), ("way on new ground", ground.new_m)):
         number(f"the {name} of the known ground", value, 0.0, LONGEST_S)

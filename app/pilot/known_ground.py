@@ -19,7 +19,7 @@ OLD_AFTER_S = 60.0  # an experience is old ground when it was made so long ago
 PLACE_REACH_M = 1.5  # a visit to a place counts for all experiences this near
 OPENING_M = 2.0  # sonars that see as far as this see open floor ...
 OPENING_GAP_M, OPENING_MOST_M = 0.7, 2.5  # ... whose place is so much before the echo, and at most so far away
-OPENING_BEAMS = 3  # must have seen an opening, from experiences, or in as many looks in a row from where the robot is
+LOOKS = 3  # in a row must have seen it: a single echo may be false
 OPENING_AGAIN_S = 120.0  # one that has been tried is tried again after this time, after twice as long the next time
 THIN_M = 0.8  # the map is thin where no experience is about this near
 UNSEEN_M2 = 5.0  # so much new ground is expected behind each opening, beside what is seen of it
@@ -29,7 +29,7 @@ ABOUT = 2  # ... which counts for places within so many times THIN_M
 _Array = NDArray[np.float64]
 
 
-@kind("known ground/4")
+@kind("known ground/5")
 class KnownGround:
     """Rows belong to the experiences, by number."""
 
@@ -40,7 +40,7 @@ class KnownGround:
         self._last_s = np.zeros(0)  # when the robot was last there
         self._made_s = np.zeros(0)
         self._seen_m = np.zeros((0, len(self._angles)), np.float32)  # sonar ranges where the experience was made
-        self._latest = np.zeros((OPENING_BEAMS, len(self._angles)), np.float32)  # sonar ranges, the newest last
+        self._latest = np.zeros((LOOKS, len(self._angles)), np.float32)  # sonar ranges, the newest last
         # Openings that have been tried: m, in an experience's frame; and until when they are left alone, s.
         self._done: list[tuple[int, float, float, float]] = []
         self.now_s = self.new_m = 0.0  # time; distance driven since the robot was last on old ground
@@ -68,7 +68,7 @@ class KnownGround:
             rows = slice(self.count, len(experiences))
             self._made_s[rows] = self._last_s[rows] = self.now_s
             self._seen_m[rows] = 0.0
-            self._seen_m[experiences.active] = ranges_m
+            self._seen_m[experiences.active] = self._latest.min(axis=0)
             self.count = len(experiences)
         elif self.now_s - self._made_s[experiences.active] > OLD_AFTER_S:
             self.new_m = 0.0
@@ -95,32 +95,30 @@ class KnownGround:
         before = np.hypot(*(placed([done[:3] for done in self._done], poses) - here).T) < THIN_M
         self._done.append((experience, x, y, self.now_s + OPENING_AGAIN_S * 2.0 ** int(before.sum())))
 
-    def openings(self, experiences: ExperienceMap, least: int) -> tuple[NDArray[np.int64], _Array, _Array]:
+    def openings(self, experiences: ExperienceMap) -> tuple[NDArray[np.int64], _Array, _Array]:
         """Experiences (k,), the places (k, 2), m, map frame, that were seen from there and never driven on, and how much
         new ground is expected about each, (k,), m².
 
-        least: so many beams must have seen a place; a single one may be a false echo. One that sees it look after look from
-        where the robot is counts as so many: in a corridor no other looks ahead. Only what lies on the robot's own submap
-        counts: where the others lie to it is unknown.
+        Only what lies on the robot's own submap counts: where the others lie to it is unknown.
         """
         submaps = experiences.submap_of[: self.count]
         own = submaps == submaps[experiences.active]
-        rows, begin, bearing, free_m, looks = self._beams(experiences, own, least)
+        rows, begin, bearing, free_m = self._beams(experiences, own)
         along = np.column_stack([np.minimum(free_m, OPENING_MOST_M), np.tile(BEYOND_M, (len(rows), 1))])
         k, at = np.nonzero(along <= free_m[:, None])
         heading, metres = begin[k, 2] + bearing[k], along[k, at]
         places = begin[k, :2] + np.stack([metres * np.cos(heading), metres * np.sin(heading)], axis=1)
         done = [tried[:3] for tried in self._done if own[tried[0]] and tried[3] > self.now_s]
         known = np.concatenate([experiences.poses[: self.count][own, :2], placed(done, experiences.poses)])
-        often, area = _new_ground(places, known, looks[k], least)
-        often &= at == 0
-        return rows[k[often]], places[often], area[often] + UNSEEN_M2
+        new, area = _new_ground(places, known)
+        new &= at == 0
+        return rows[k[new]], places[new], area[new] + UNSEEN_M2
 
     def _beams(
-        self, experiences: ExperienceMap, own: NDArray[np.bool_], least: int
-    ) -> tuple[NDArray[np.int64], _Array, _Array, _Array, NDArray[np.int64]]:
-        """The beams that see open floor, one from each experience and those of now: from which experience, (k,), and place,
-        (k, 3); where to (rad, left positive) and how far (m); and as how many looks each counts."""
+        self, experiences: ExperienceMap, own: NDArray[np.bool_]
+    ) -> tuple[NDArray[np.int64], _Array, _Array, _Array]:
+        """The beams that see open floor, from the experiences and from where the robot is: from which experience, (k,), and
+        place, (k, 3); where to (rad, left positive) and how far (m)."""
         rows, beams = np.nonzero((self._seen_m[: self.count] >= OPENING_M) & own[:, None])
         now_m, robot = self._latest.min(axis=0), experiences.robot
         now = np.flatnonzero(now_m >= OPENING_M)
@@ -131,7 +129,6 @@ class KnownGround:
             np.concatenate([experiences.poses[rows], here]),
             self._angles[np.concatenate([beams, now])],
             seen_m - OPENING_GAP_M,
-            np.repeat([1, least], [len(rows), len(now)]),
         )
 
 
@@ -145,22 +142,19 @@ def placed(points: list[tuple[int, float, float]], poses: _Array) -> _Array:
     return np.stack([x + c * rows[:, 1] - s * rows[:, 2], y + s * rows[:, 1] + c * rows[:, 2]], axis=1)
 
 
-def _new_ground(
-    places: _Array, known: _Array, looks: NDArray[np.int64], least: int
-) -> tuple[NDArray[np.bool_], _Array]:
-    """Which of the places (k, 2) lie farther than THIN_M (to twice that) from all known ones (n, 2), where those seen in so
-    many looks (k,) add up to `least`; and how much of such ground, m², lies within `ABOUT` cells of each."""
+def _new_ground(places: _Array, known: _Array) -> tuple[NDArray[np.bool_], _Array]:
+    """Which of the places (k, 2) lie farther than THIN_M (to twice that) from all known ones (n, 2), and how much of such
+    ground, m², lies within `ABOUT` cells of each."""
     if not len(places):
         return np.zeros(0, np.bool_), np.zeros(0)
     both = np.concatenate([places, known])
     low = both.min(axis=0) - (ABOUT + 1) * THIN_M
     size = np.ceil((both.max(axis=0) - low) / THIN_M).astype(np.int64) + ABOUT + 1
-    old, seen = np.zeros(size, np.bool_), np.zeros(size, np.int64)
+    old, new = np.zeros(size, np.bool_), np.zeros(size, np.bool_)
     cells = np.floor((both - low) / THIN_M).astype(np.int64)
     mine, theirs = tuple(cells[: len(places)].T), tuple(cells[len(places) :].T)
-    old[theirs] = True
-    np.add.at(seen, mine, looks)
-    new = ~_spread(old, 1) & (seen >= least)
+    old[theirs] = new[mine] = True
+    new &= ~_spread(old, 1)
     area = THIN_M**2 * _summed(new.astype(np.float64), ABOUT)
     return new[mine], area[mine]
 

@@ -95,7 +95,9 @@ def _near_but_far(
 ) -> tuple[NDArray[np.int64], _Array, _Array]:
     """Experiences (k,) that lie near on the map, but far by the links; of all (n,), how far away, m, and how far to turn, rad."""
     away, way = np.hypot(poses[:, 0] - robot.x, poses[:, 1] - robot.y), times * p.cruise_speed
-    near = np.flatnonzero((away < p.loop_share * np.minimum(way, LOOP_MOST_M)) & (way > LOOP_M))
+    # Where no links lead, as on another submap, the map does not say what is near.
+    far = np.isfinite(way) & (way > LOOP_M)
+    near = np.flatnonzero((away < p.loop_share * np.minimum(way, LOOP_MOST_M)) & far)
     return near.astype(np.int64), away, np.abs(wrap_angles(poses[:, 2] - robot.heading_rad))
 
 

@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.pilot.bars import Bars
-from app.pilot.known_ground import OLD_AFTER_S, OPENING_BEAMS, PLACE_REACH_M, KnownGround
+from app.pilot.known_ground import OLD_AFTER_S, PLACE_REACH_M, KnownGround
 from app.pilot.local_movement import LocalMovement
 from app.pilot.loop_closing import LoopCloser, in_the_middle
 from app.pilot.opening import Opening
@@ -36,7 +36,6 @@ AFTER_BARRED_S = 10.0  # it wanders for so long where it found no way
 LONG_AGO_S = 120.0  # places visited more lately than this are not sought again
 SEARCH_SHARE = 0.1  # the rest of its map is looked for while another submap is larger than this share of its own ...
 SEARCH_HOME = 2.0  # ... metres of the way there that a metre from where its submap began to an opening counts as ...
-SEARCH_BEAMS = 1  # ... and an opening is what so many beams have seen
 BEGIN_S = 10.0  # added to the time of each way: small ground near by is not worth a start
 FREE_M = 0.2  # an opening is seen from here if so much is free towards it
 
@@ -156,7 +155,7 @@ class Seeker:
                 self._last_leg, self._on_last_leg = self._closer, True
                 self.reason = f"to close a loop: {times[goal]:.0f} s away by the links"
         if goal is None:
-            goal = self._best_opening(experiences, local, times, p, SEARCH_BEAMS if searching else OPENING_BEAMS)
+            goal = self._best_opening(experiences, local, times, p)
         self.explored = goal is None and (self.explored or (self._wander_s > WANDER_S and not searching))
         if goal is None and self.explored and self._wander_s > WANDER_S:
             goal = self._long_ago(times)
@@ -172,10 +171,10 @@ class Seeker:
         return int(known[np.argmin(times[known])]) if len(known) else None
 
     def _best_opening(
-        self, experiences: ExperienceMap, local: LocalMovement, times: NDArray[np.float64], p: PilotParams, least: int
+        self, experiences: ExperienceMap, local: LocalMovement, times: NDArray[np.float64], p: PilotParams
     ) -> int | None:
         """The one with the most new ground for the time: over the links to where it was seen from, or straight if near."""
-        rows, places, area = self.ground.openings(experiences, least)
+        rows, places, area = self.ground.openings(experiences)
         self.openings = places
         reached = np.isfinite(times[rows])
         rows, places, area = rows[reached], places[reached], area[reached]

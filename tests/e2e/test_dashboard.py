@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 
 import cv2
 import numpy as np
@@ -178,7 +179,9 @@ def test_a_click_with_shift_on_the_map_and_a_click_into_the_pose_cells_inspect(p
 
     show(page, "pose")
     state = program.state()["pose_cells"]
-    at = CellFit(tuple(state["shape"])).packet(Packet(**state["packets"][0])) + CELLS_ORIGIN
+    packet = Packet(**state["packets"][0])
+    apart = replace(packet, x=(packet.x + state["shape"][0] / 4) % state["shape"][0])
+    at = CellFit(tuple(state["shape"])).packet(apart) + CELLS_ORIGIN
     page.mouse.click(*on_screen(page, "pose", tuple(at.tolist())))
     expect(panel).to_contain_text("pose cells at")
     expect(panel).to_contain_text("Views linked here, by strength")

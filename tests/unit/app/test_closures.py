@@ -15,7 +15,7 @@ TICKS = 1050
 
 def test_a_closure_has_the_map_before_it_and_as_its_correction_left_it() -> None:
     """A drive around a block until the first loop has closed and settled, with the map after each tick."""
-    session = Session(load_world("loop"), 7)
+    session = Session(load_world("loop"), 3)
     history, maps = History(session), [session.brain.experience_map.poses[:, :2].astype(np.float32)]
     for _ in range(TICKS):
         session.tick()

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from app.pilot.known_ground import (
+    LOOKS,
     OLD_AFTER_S,
     OPENING_AGAIN_S,
-    OPENING_BEAMS,
     OPENING_MOST_M,
     PLACE_REACH_M,
     THIN_M,
@@ -42,7 +42,7 @@ def driven(places: Places, ranges: np.ndarray = OPEN_LEFT) -> tuple[KnownGround,
 
 
 def openings(ground: KnownGround, map_: HandMadeMap) -> tuple[np.ndarray, np.ndarray]:
-    rows, places, area = ground.openings(map_, 3)  # type: ignore[arg-type]
+    rows, places, area = ground.openings(map_)  # type: ignore[arg-type]
     assert len(rows) == len(places) == len(area)
     assert (area > 0).all()
     return rows, places
@@ -66,7 +66,7 @@ def test_open_floor_that_was_never_driven_on_is_an_opening() -> None:
 def test_what_it_sees_ahead_look_after_look_is_an_opening() -> None:
     """In a corridor a single beam looks ahead. An echo that goes and comes, as of somebody who passes, makes none."""
     ahead = np.array([*NEAR[:3], 4.0, *NEAR[4:]], np.float32)
-    for looks, found in ((1, False), (OPENING_BEAMS - 1, False), (OPENING_BEAMS, True)):
+    for looks, found in ((1, False), (LOOKS - 1, False), (LOOKS, True)):
         ground, map_ = driven([(0.0, 0.0)], NEAR)
         map_.robot = Pose2(1.0, 0.0, 0.5)
         for ranges in (ahead, ahead, NEAR, *looks * [ahead]):
@@ -82,7 +82,7 @@ def test_how_much_new_ground_lies_about_an_opening_is_known() -> None:
     """A hall that was seen along 6 m, and a niche along half a metre."""
     ground, map_ = driven(along(80))
     ground._seen_m[60:75, 0] = 1.0
-    rows, _, area = ground.openings(map_, 3)  # type: ignore[arg-type]
+    rows, _, area = ground.openings(map_)  # type: ignore[arg-type]
     area -= UNSEEN_M2
     assert area[rows == 30].min() > 2 * area[rows >= 75].max()
 

@@ -10,7 +10,7 @@ from .sessions import OFFICE, a_session
 
 
 def test_a_place_is_known_where_an_experience_was_made_near_it_and_the_goal_there_is_one() -> None:
-    session = a_session(1600, seed=5)
+    session = a_session(800, seed=5)
     map_, places = session.brain.experience_map, known_places(session)
     births = session.evaluation.births(len(map_.poses))
     assert [place.name for place in places] == [place.name for place in OFFICE.places]

@@ -69,6 +69,15 @@ def test_on_old_ground_the_direction_counts_more_than_the_place() -> None:
     assert -MIDDLE_M - 1e-9 <= aim[1] < 0.0
 
 
+def test_where_no_links_lead_is_no_loop() -> None:
+    """As on another submap: where that lies, the map does not say."""
+    map_ = almost_round()
+    map_.links = map_.links[:-20]
+    map_.link_times = map_.link_times[:-20]
+    assert np.isinf(map_.temporal_map.times_to(map_.active)).any()
+    assert not chooses(map_, LoopCloser(ANGLES))
+
+
 def test_a_closed_loop_ends_it() -> None:
     map_, closer = closing()
     map_.links = np.concatenate([map_.links, [(0, len(map_) - 1)]])  # recognised

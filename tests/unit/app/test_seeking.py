@@ -94,7 +94,7 @@ def test_it_goes_where_open_floor_was_seen() -> None:
     x, y = run.truth
     assert x > 2.5
     assert abs(y - (1.0 + 11.5 * 0.25)) < 1.5
-    left = ground.openings(run.map, 3)[1]  # type: ignore[arg-type]
+    left = ground.openings(run.map)[1]  # type: ignore[arg-type]
     assert np.hypot(*(left - place).T).min() > THIN_M  # not there twice; on from there, where it looks
 
 
@@ -103,9 +103,8 @@ def test_a_door_post_in_the_way_is_driven_round() -> None:
     map_ = HandMadeMap(*chain((2.3, 1.0), (2.3, 2.0)))
     map_.landed = 2
     run = a_run(map_, (3.0, 0.0, 3.0, 2.4), (3.0, 3.6, 3.0, 8.0), **NO_LOOPS)
-    chosen(run)
     seeker = run.pilot._seeker
-    seeker.follower = RouteFollower(len(map_) - 1, run.pilot._bars)
+    seeker.follower, seeker._trip_most_s = RouteFollower(len(map_) - 1, run.pilot._bars), 60.0
     seeker._last_leg = Opening(len(map_) - 1, Pose2(2.2, 0.95, 0.0))
     while seeker.follower is not None and len(run.track) < 250:
         run.tick()

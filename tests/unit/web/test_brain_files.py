@@ -7,6 +7,7 @@ import io
 import json
 import zipfile
 from concurrent.futures import Future
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -15,7 +16,7 @@ import pytest
 from disk import archive
 from ratslam_core import Odometry, RatSlam, take_snapshot
 from tests.unit.web.doubles import House
-from web.http import brains
+from web.http import brains, security
 from web.http.asking import NoAnswer
 from web.http.brains import BrainDownload, packed, unpacked
 from web.http.security import MAX_BRAIN_BYTES
@@ -166,7 +167,9 @@ def test_a_brain_comes_up_and_is_used_unless_the_engine_refuses_it(served: House
     assert (status, answer["detail"][0]["reason"]) == (422, served.engine.answer.reason)
 
 
-def test_only_binary_of_a_bounded_size_and_number_from_here_is_taken(served: House) -> None:
+def test_only_binary_of_a_bounded_size_and_number_from_here_is_taken(served: House, monkeypatch) -> None:
+    now_s = security.time.monotonic()
+    monkeypatch.setattr(security, "time", SimpleNamespace(monotonic=lambda: now_s))
     assert served.client.post("/api/brain", json={}).status_code == 415
     assert served.client.post("/api/commands", content=b"{}", headers=BINARY).status_code == 415
     assert uploaded(served, b"x", **{"Content-Length": str(MAX_BRAIN_BYTES + 1)})[0] == 413
