@@ -8,10 +8,13 @@ unit of evidence; and since wrong places can stay alike for longer, a unit takes
 Beside all hypotheses stands that of a new place, for and against which nothing speaks.
 
 A robot that noticed that it was carried may be anywhere. One whose observation lies outside the validation gate is in
-doubt: *here*, where odometry has led it, is a rival, too, weighed by what is seen there; what lies farther off than
+doubt: *here*, where odometry has led it, is a rival, too, if what is seen there speaks against it; what lies farther off than
 odometry can have drifted begins with odds against it, at most those of having been carried unnoticed; and since an exact
 copy of a place may exist, observations say no more than MOST_SAID. So in a twin odometry decides, where observations
 cannot.
+
+A corridor that was driven twice lies on the map twice, a little apart, until something closes that loop. So what is near a
+hypothesis is the same place, no rival, and what is seen *here* as well says nothing against there.
 
 The robot *believes* a hypothesis that is likelier than all others together. There it acts; nothing is learnt from it, so
 that it may be wrong at no cost. Where the odds are 1000 to 1, the submap on which it was is *merged*. test_evidence.py.
@@ -46,7 +49,10 @@ PRIOR = -2.0  # log odds of a place that a view suggests, against a new place
 FORGOTTEN = PRIOR - 4.0  # log odds below which a hypothesis is given up
 DOUBTED = 15.0  # and, while in doubt, how far they may lie below the likeliest's
 QUIET = 5.0  # units of way after which a doubt is over for which nothing has spoken
-HERE, HERE_RAD = 4.0, 0.6  # cells; a hypothesis so near to where a robot in doubt is mapping, is that it is there
+ONE_PLACE, ONE_PLACE_RAD = (
+    4.0,
+    0.6,
+)  # cells; so near is the same place, which a map has twice until its loops are closed
 BELIEVE_IN_DOUBT = 3.0  # nats: who was hardly carried must not wander off in thought for perceptual aliasing
 SAME, SAME_RAD = 2.4, 0.3  # cells; hypotheses this near are one
 PULLS, PULLS_RAD = 2.8, 0.35  # cells; a view this near to a hypothesis says more exactly where it is
@@ -203,8 +209,9 @@ class Evidence:
         rows = self.hypotheses
         if not self.in_doubt:
             return rows, [0.0]
-        here = self._here(robot)
-        return rows[~here], [self.here, *rows[here, ODDS], -self.params.unnoticed]
+        here = self._same_place(rows, robot)
+        # What is seen here, too, says nothing against there: they may be two passes of one place.
+        return rows[~here], [*np.minimum([self.here, *rows[here, ODDS]], 0.0).tolist(), -self.params.unnoticed]
 
     def _believe(self, map_: Map, views: LocalViewPart, known: Ints) -> None:
         self.belief = None
@@ -213,8 +220,8 @@ class Evidence:
             return
         best = int(np.argmax(rows[:, ODDS]))
         row = rows[best : best + 1]
-        # One place may lie on two submaps.
-        rivals = (rows[:, SUBMAP] == row[0, SUBMAP]) & (np.arange(len(rows)) != best)
+        # One place may lie on two submaps, or twice on one.
+        rivals = (rows[:, SUBMAP] == row[0, SUBMAP]) & ~self._same_place(rows, Pose2(*row[0, :3].tolist()))
         odds = float(row[0, ODDS] - np.logaddexp.reduce(np.append(rows[rivals, ODDS], beside)))
         least = BELIEVE_IN_DOUBT if self.in_doubt else self.params.believe
         if odds <= least or row[0, UNITS] < LEAST_SEEN:
@@ -225,11 +232,10 @@ class Evidence:
             pose = Pose2(x, y, wrap_angle(heading))
             self.belief = Belief(pose, odds, int(there.experience[0]), float(there.facing[0]))
 
-    def _here(self, robot: Pose2) -> Flags:
-        """Which hypotheses are where a robot in doubt is mapping, since a map is a little off."""
-        rows = self.hypotheses
-        turn = np.abs(wrap_angles(rows[:, HEADING] - robot.heading_rad))
-        return (np.hypot(rows[:, X] - robot.x, rows[:, Y] - robot.y) < HERE * self.cell_m) & (turn < HERE_RAD)
+    def _same_place(self, rows: Floats, pose: Pose2) -> Flags:
+        """Which hypotheses, (n, 7), are about there: none of them is a rival of another."""
+        turn = np.abs(wrap_angles(rows[:, HEADING] - pose.heading_rad))
+        return (np.hypot(rows[:, X] - pose.x, rows[:, Y] - pose.y) < ONE_PLACE * self.cell_m) & (turn < ONE_PLACE_RAD)
 
     @property
     def idle(self) -> bool:

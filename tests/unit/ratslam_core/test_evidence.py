@@ -162,6 +162,36 @@ def test_of_two_places_that_look_the_same_neither_is_believed() -> None:
     assert odds[0] == pytest.approx(odds[1], abs=0.5)
 
 
+def two_passes(apart_m: float) -> Known:
+    """A corridor that was driven twice, as the map has it while nothing has closed that loop."""
+    known = Known()
+    passes = np.concatenate([known.poses, known.poses + np.array([0.0, apart_m, 0.0])])
+    known.poses, known.taken, known.count = passes, 2 * known.taken, len(passes)
+    known.views, known.submap_of = np.arange(known.count), np.zeros(known.count, np.int32)
+    return known
+
+
+@pytest.mark.parametrize(("apart_m", "believed"), [(0.8, True), (3.0, False)])
+def test_two_passes_side_by_side_are_no_rivals(apart_m: float, believed: bool) -> None:
+    known = two_passes(apart_m)
+    evidence = carried(known)
+    drive(evidence, known, Views(known.taken, Pose2(2.0, 0.0, 0.0)), 60)
+    assert (evidence.belief is not None) == believed
+
+
+@pytest.mark.parametrize(("prior", "closed"), [(-2.0, True), (-EvidenceParams().unnoticed, False)])
+def test_what_is_seen_here_too_says_nothing_against_the_pass_beside_it(prior: float, closed: bool) -> None:
+    """If odometry can have drifted from one to the other; else here is here, and there a twin."""
+    known = two_passes(2.0)
+    evidence, views = in_doubt(known, prior), Views(known.taken, Pose2(2.0, 0.0, 0.0))
+    known.robot_here = Pose2(2.0, 2.0, 0.0)
+    for _ in range(80):
+        drive(evidence, known, views, 1)
+        known.robot_here = known.robot_here.compose(Pose2(0.03, 0.0, 0.0))
+    assert evidence.here > 1.0
+    assert (evidence.belief is not None and evidence.belief.log_odds >= evidence.params.merge) == closed
+
+
 def test_the_likeliest_of_those_that_meet_stays_and_what_was_gathered_fades_with_the_way() -> None:
     rows = np.zeros((law.MOST, 7))
     rows[:4, :4] = [[0, 0, 0, 1.0], [0.2, 0, 0.1, 3.0], [5, 0, 0, 2.0], [9, 9, 0, law.FORGOTTEN - 1]]
@@ -362,8 +392,9 @@ def test_where_it_is_mapping_is_no_other_place() -> None:
         drive(evidence, known, views, 1)
         known.robot_here = views.robot.compose(Pose2(0.3, 0.2, 0.2))
         assert evidence.belief is None
-    near = evidence.weighed(known.robot_here)[1]
-    assert max(near) > 1.0  # beside exactly where it maps, since the map is a little off
+    elsewhere, here = evidence.weighed(known.robot_here)
+    assert evidence.hypotheses[:, law.ODDS].max() > 1.0  # beside exactly where it maps, since the map is a little off
+    assert (len(elsewhere), max(here)) == (0, 0.0)
 
 
 def test_a_doubt_ends_when_nothing_speaks_for_it() -> None:
