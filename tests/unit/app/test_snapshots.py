@@ -232,13 +232,13 @@ def test_the_hypotheses_of_the_robot_are_shown_where_they_are(session: Session) 
     kept = deepcopy(evidence.__dict__)
     evidence.end()
     evidence.doubt(len(map_))
-    for away, odds in ((3.0, 1.0), (5.0, 2.0), (0.1, 0.5)):  # the last is where it is
+    for away, odds in ((3.0, 1.0), (5.0, 2.0), (0.1, 0.5)):  # the last is where it is, and speaks against no other
         evidence._rows[evidence._count, :4] = here.x + away, here.y, here.heading_rad, odds
         evidence._count += 1
     told = snapshot(session).belief
     assert told is not None
     assert told.off_m == map_.pose_filter.sigma_m
-    total = sum(math.exp(odds) for odds in (1.0, 2.0, 0.5, 0.0, -evidence.params.unnoticed))
+    total = sum(math.exp(odds) for odds in (1.0, 2.0, 0.0, 0.0, -evidence.params.unnoticed))
     assert [(other.x - here.x, other.heading_rad, other.share) for other in told.others] == [
         pytest.approx((away, here.heading_rad, math.exp(odds) / total)) for away, odds in ((5.0, 2.0), (3.0, 1.0))
     ]
