@@ -49,10 +49,7 @@ PRIOR = -2.0  # log odds of a place that a view suggests, against a new place
 FORGOTTEN = PRIOR - 4.0  # log odds below which a hypothesis is given up
 DOUBTED = 15.0  # and, while in doubt, how far they may lie below the likeliest's
 QUIET = 5.0  # units of way after which a doubt is over for which nothing has spoken
-ONE_PLACE, ONE_PLACE_RAD = (
-    4.0,
-    0.6,
-)  # cells; so near is the same place, which a map has twice until its loops are closed
+ONE_PLACE, ONE_PLACE_RAD = 4.0, 0.6  # cells; the same place, which a map has twice until its loops are closed
 BELIEVE_IN_DOUBT = 3.0  # nats: who was hardly carried must not wander off in thought for perceptual aliasing
 SAME, SAME_RAD = 2.4, 0.3  # cells; hypotheses this near are one
 PULLS, PULLS_RAD = 2.8, 0.35  # cells; a view this near to a hypothesis says more exactly where it is
