@@ -51,7 +51,7 @@ class PilotParams:
         0.25, "known ground nearer than this share of the way there by the links is driven along until a loop closes", 0.0,
         1.0)
     far_look_back_m: float = param(
-        20.0, "on new ground: distance driven before it turns back to look; each turn costs heading", 1.0, 1000.0, "m")
+        10.0, "on new ground: distance driven before it turns back to look; each turn costs heading", 1.0, 1000.0, "m")
 
     def __post_init__(self) -> None:
         check_ranges(self)

@@ -278,14 +278,20 @@ class RouteFollower:
         """Where the route starts: where the last one has led to, at the active experience, or over an imagined link at
         one nearby, if that is quicker and neither a bar nor an echo lies between.
 
+        Two passes of one corridor may lie farther from each other on the map than an imagined link may reach. Who follows
+        the one beside the other keeps to it; to leave it would be to turn back, to where it sees that pass again.
+        test_routes.py::test_a_route_beside_it_is_kept.
+
         times: to the goal, s; away: from the robot, m; (n,) each.
         """
         robot, poses, active = experiences.robot, experiences.poses, experiences.active
         reach = min(NEAR_M + NEAR_GROWTH * self._no_route_s, NEAR_MOST_M)
         near = np.flatnonzero((away < reach) & np.isfinite(times))
         near = near[~self._bars.between(robot.x, robot.y, poses[near, :2])]
-        on_route = -1 if self._route is None else int(self._route.experiences[self._at])
         near = np.append(near, active)
+        on_route = -1 if self._route is None else int(self._route.experiences[self._at])
+        if self._route is not None and away[on_route] < NEAR_MOST_M:
+            near = np.append(near, on_route)
         turn = np.abs(wrap_angles(poses[near, 2] - robot.heading_rad))
         cost = times[near] + away[near] / NEAR_SPEED + NEAR_TURN_COST * turn
         cost += (NEAR_COST + NEAR_DOUBT_S * self._bars.failures) * ((near != active) & (near != on_route))

@@ -296,6 +296,21 @@ def test_the_robot_stays_on_its_route_unless_another_is_much_quicker() -> None:
         assert bool(follower.progress(map_).route[0] < n) is stays  # type: ignore[arg-type]
 
 
+def test_a_route_beside_it_is_kept() -> None:
+    """The map has two passes of one corridor 1.2 m apart: along the one it need not turn back to follow the other."""
+    places, links = chain((0.0, 0.0), (8.0, 0.0))
+    own, joined = chain((0.0, 0.0), (1.0, 0.3), (2.0, 1.2), (4.0, 1.2), (6.0, 2.4))
+    n, goal = len(places), len(places) - 1
+    links += [(0, n), *((i + n, j + n) for i, j in joined)]  # they were one place only where they began
+    map_ = HandMadeMap(places + own, links)
+    follower = RouteFollower(goal)
+    for x, y, stays in ((1.0, 0.3, True), (2.0, 1.2, True), (4.0, 1.2, True), (6.0, 2.4, False)):
+        map_.robot = Pose2(x, y, 0.0)
+        for _ in range(15):
+            follow(follower, map_)
+        assert bool(follower.progress(map_).route[0] < n) is stays  # type: ignore[arg-type]
+
+
 def test_close_by_and_not_getting_nearer_is_there() -> None:
     """At a goal in a corner where the robot just does not fit."""
     map_ = HandMadeMap(*chain((0.0, 0.0), (3.0, 0.0)))
