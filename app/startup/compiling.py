@@ -27,6 +27,7 @@ from numba.core import config as numba_config
 from numba.core.dispatcher import Dispatcher
 from numba.core.event import Event, Listener, register  # pyright: ignore[reportUnknownVariableType]
 
+import app.pilot.bars
 import app.pilot.local_movement
 import ratslam_core.experience_map.places
 import ratslam_core.extensions.evidence
@@ -235,8 +236,9 @@ def loops() -> None:
         made.evidence.observe(made, seen_by, made.submaps.current)
     ratslam_core.extensions.evidence.nats(0.5, 0)
     ratslam_core.extensions.odometry_edges.open_way_m(made.transitions, 0, 1)
-    local = LocalMovement(_ANGLES, config.pilot.echo_s)
-    RouteFollower(0, Bars()).step(made, local, 0.1, config.pilot)
+    local, bars = LocalMovement(_ANGLES, config.pilot.echo_s), Bars()
+    bars.add(made.robot, 0.0, config.pilot)
+    RouteFollower(0, bars).step(made, local, 0.1, config.pilot)
     find_places(made)
 
 
@@ -249,7 +251,7 @@ PARTS: dict[str, tuple[Callable[[], None], tuple[Any, ...]]] = {
                       ratslam_core.local_view.matcher, ratslam_core.local_view.view_links)),
     "loops": (loops, (ratslam_core.pose_graph.relaxation, ratslam_core.solvers.laplacian, ratslam_core.solvers.dijkstra,
                       ratslam_core.extensions.evidence, ratslam_core.extensions.odometry_edges,
-                      ratslam_core.experience_map.places)),
+                      ratslam_core.experience_map.places, app.pilot.bars)),
     "maps": (maps, (ratslam_core.goal_memory, ratslam_core.occupancy_grid)),
 }  # fmt: skip
 
