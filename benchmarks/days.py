@@ -9,6 +9,7 @@ shortest way at 0.15 m/s and a minute. Bar: from the second hour to the last, no
 from __future__ import annotations
 
 import argparse
+import math
 import os
 import time
 from collections.abc import Iterator
@@ -91,15 +92,19 @@ def days(world: str, seed: int, hours: int, hour_s: float) -> list[Hour]:
 
 
 def goal_after_goal(course: Course, until_s: float) -> Iterator[str]:
+    while course.session.time_s < until_s:
+        yield from to_places_spread(course, GOALS, until_s)
+
+
+def to_places_spread(course: Course, goals: int, until_s: float = math.inf) -> Iterator[str]:
+    """To places spread over what the robot knows, each with the time of the shortest way at 0.15 m/s and a minute."""
     session = course.session
-    map_ = session.brain.experience_map
-    while True:
-        for k, goal in enumerate(spread_goals(session, GOALS)):
-            place = session.evaluation.made_at(goal, map_)
-            if session.time_s >= until_s:
-                return
-            shortest_m = min(session.simulator.free_space.shortest_m(course.here, place), FARTHEST_M)
-            yield from course.go(f"goal {k}", goal, place, shortest_m / 0.15 + 60, NEAR_M)
+    for k, goal in enumerate(spread_goals(session, goals)):
+        place = session.evaluation.made_at(goal, session.brain.experience_map)
+        if session.time_s >= until_s:
+            return
+        shortest_m = min(session.simulator.free_space.shortest_m(course.here, place), FARTHEST_M)
+        yield from course.go(f"goal {k}", goal, place, shortest_m / 0.15 + 60, NEAR_M)
 
 
 def tell(world: str, hours: list[Hour]) -> None:

@@ -18,7 +18,7 @@ import numpy as np
 
 from disk import kind
 from ratslam_core.experience_map.temporal_map import TemporalMap
-from ratslam_core.extensions.evidence import PRIOR, Belief, Evidence
+from ratslam_core.extensions.evidence import PRIOR, SAME, Belief, Evidence
 from ratslam_core.extensions.exact_solver import ExactSolver
 from ratslam_core.extensions.familiar_ground import FamiliarGround, NewGround
 from ratslam_core.extensions.odometry_edges import NoOdometryEdges, OdometryEdges, inflate_covariance, open_way_m
@@ -265,9 +265,11 @@ class ExperienceMap(PoseGraph):
             return PRIOR
         return -min(self._against_drift(experience, pose), self._against_error(experience))
 
-    def _against_drift(self, experience: int, pose: Pose2) -> float:
+    def _against_drift(self, experience: int, pose: Pose2, precise_m: float = 0.0) -> float:
+        """precise_m: how precisely the pose is known."""
         drift = self.params.odometry_drift * open_way_m(self.transitions, experience, len(self))
-        return 0.5 * (self._off(pose) / max(math.hypot(self.pose_filter.sigma_m, drift), 1e-9)) ** 2
+        sigma = max(math.hypot(self.pose_filter.sigma_m, drift, precise_m), 1e-9)
+        return 0.5 * (self._off(pose) / sigma) ** 2
 
     def _against_error(self, experience: int) -> float:
         merge, unnoticed = self._merge_before(experience), self.evidence.params.unnoticed
@@ -349,14 +351,22 @@ class ExperienceMap(PoseGraph):
             own = self.carried and other < self.submaps.current
             self.submaps.merge(other, self.submap_of, self.poses, self.robot_here, belief.pose)
             self.submaps.last_merge = Merge(self.evidence.known, belief.log_odds) if own else None
-        elif self._against_drift(belief.experience, belief.pose) >= self._against_error(belief.experience):
+        elif self._led_astray(belief):
             self._correct_error(belief)
         self._end_of_doubt()
         self.carried = False
         return belief.experience, Recognition(view, False, view, by.views.difference_to(view), belief.facing_rad)
 
+    def _led_astray(self, belief: Belief) -> bool:
+        """[ours] Whether the robot is where odometry cannot have led it, and not just where a hypothesis is a little off.
+
+        test_evidence.py::test_a_hypothesis_that_is_a_little_off_is_no_proof_against_odometry.
+        """
+        against = self._against_drift(belief.experience, belief.pose, SAME * self.cell_m)
+        return against >= self._against_error(belief.experience)
+
     def _correct_error(self, belief: Belief) -> None:
-        """The robot is where odometry cannot have led it from where it believed itself to be."""
+        """An earlier merge was wrong, or the robot was carried unnoticed."""
         self.corrected += 1
         merge = self._merge_before(belief.experience)
         if merge is not None and self.here >= merge.first:

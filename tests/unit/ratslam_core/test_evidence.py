@@ -436,6 +436,20 @@ def test_who_was_carried_unnoticed_gives_way_and_its_odometry_with_it() -> None:
     assert softer.any()
 
 
+def test_a_hypothesis_that_is_a_little_off_is_no_proof_against_odometry() -> None:
+    """It was not carried: what it sees is put 2.5 m beside where odometry led, farther than that can have drifted."""
+    robot = Robot(recognises=True)
+    map_, known, weights = robot.map, robot.map.transitions.count, robot.map.transitions.weight.copy()
+    robot.carry(Pose2(6.0, 0.0, 0.0), noticed=False)
+    map_.pose_filter.local = map_.pose(map_.here).inverse().compose(Pose2(3.5, 0.0, 0.0))
+    while map_.evidence.in_doubt or not map_.closures:
+        robot.drive(1)
+        assert robot.pose.x < 11.9
+    assert robot.off_m < 0.5
+    assert map_.corrected == 0
+    assert np.array_equal(map_.transitions.weight[:known], weights[:known])
+
+
 def merged_wrongly(robot: Robot, sure: float) -> int:
     """It was carried to x = 1 m, and its submap is merged six metres farther on, with a closure there."""
     map_, known = robot.map, len(robot.map)
