@@ -16,6 +16,7 @@ from ratslam_core.experience_map.experience_map import ExperienceMap
 from ratslam_core.extensions.exact_solver import ExactSolver
 from ratslam_core.extensions.familiar_ground import FamiliarGround, NewGround
 from ratslam_core.extensions.kidnap_detector import KidnapDetector, NeverKidnapped
+from ratslam_core.extensions.scan_matching import ScanMatching
 from ratslam_core.goal_memory import GoalMemory
 from ratslam_core.local_view.recogniser import LocalView
 from ratslam_core.local_view.view_links import ViewLinks, VisualAssociation
@@ -66,6 +67,8 @@ class Brain:
         if len(sonar_angles_rad) > 0:
             self.occupancy = OccupancyGrid(shape, cell_m, sonar_angles_rad)
             self.map_grid = MapGrid(sonar_angles_rad)
+        matches = p.experience_map.scan_matching and len(sonar_angles_rad) > 0
+        self.scans = ScanMatching(sonar_angles_rad) if matches else None
         self.memories = Memories(self.goal_memory, self.occupancy, self.map_grid, p.occupancy)
         self.beats = Beats()
         self.relocalisations: int = 0  # how often the winning packet has jumped
@@ -101,6 +104,8 @@ class Brain:
         self.kidnap_detector.declare(len(self.experience_map))
         if self.carried:
             self.experience_map.declare_kidnapped(sure=sure)
+            if self.scans is not None:
+                self.scans.forget()
 
     def forget_view(self, view: int) -> None:
         """[ours] Forget where a view was seen: its links to pose cells, and which experiences were made with it.

@@ -24,7 +24,7 @@ def _nobody(_stage: str) -> None:
     """The default for `watch`: does nothing."""
 
 
-@kind("ratslam/4")
+@kind("ratslam/5")
 class RatSlam(Brain):
     """A brain that takes the papers' steps."""
 
@@ -59,9 +59,13 @@ class RatSlam(Brain):
         watch("view match")
         self._notice_kidnap(scan, tick)
         packet, jumped = self.localisation.step(seen, self.local_view.strength(seen), tick, self.carried, watch)
+        self._hear(scan, tick)
         created = map_.step(
-            packet, seen, tick.latest, behaviour, beats=tick.beats, views=self.local_view, verification=verification
-        )
+            packet, seen, tick.latest, behaviour, beats=tick.beats, views=self.local_view,
+            verification=verification or self.scans,
+        )  # fmt: skip
+        if created and self.scans is not None:
+            self.scans.made(map_.here)
         self._settle(seen, created, tick)
         map_.ground.note(map_, seen, created, tick.moved, self.carried, tick.beats)
         watch("experience")
@@ -75,6 +79,10 @@ class RatSlam(Brain):
     def _notice_kidnap(self, scan: Floats | None, tick: Tick) -> None:
         if self.kidnap_detector.observe(self.local_view.image_change, scan, tick.beats):
             self.declare_kidnapped(sure=self.kidnap_detector.sure)
+
+    def _hear(self, scan: Floats | None, tick: Tick) -> None:
+        if self.scans is not None:
+            self.scans.sense(scan, tick.moved, tick.beats)
 
     def _settle(self, seen: Recognition, created: bool, tick: Tick) -> None:
         known = NOTHING if created or seen.view == NOTHING else self.experience_map.here

@@ -111,10 +111,11 @@ class ExperienceMap(PoseGraph):
             self._edges.made(self.here, driven, self.transitions, self._weight_of_way)
             return True
         if best != before.experience:
-            self._enter(best, *(observation or (self._observation_by_view(best, seen), self._deviation(seen))))
+            assert observation is not None
+            self._enter(best, *observation)
             self._learn_link(before, behaviour)
         elif self._arrival is not None and self._deviation(seen) < self._sigma:
-            self._see_better(seen)
+            self._see_better(seen, verification)
         return False
 
     def move(self, odometry: Odometry) -> None:
@@ -251,11 +252,11 @@ class ExperienceMap(PoseGraph):
         # On familiar ground there is something to see, so the experiences of nothing do not count.
         best, seen = (-1, seen) if seen.familiar else self._seen_experience(packet, seen, by)
         by_place = self.ground.of_view(self, seen.view) if best < 0 else -1
-        observation = None
-        if best >= 0 and best != self.here:
-            observation = self._measured(best, packet, seen, by.verification)
-            best = -1 if observation is None else best
-        return max(best, by_place), observation, seen
+        if max(best, by_place) in (-1, self.here):
+            return max(best, by_place), None, seen
+        told = self._observation(best, packet, seen) if best >= 0 else self._observation_by_view(by_place, seen)
+        observation = self._measured(max(best, by_place), told, seen, by.verification)
+        return -1 if observation is None else max(best, by_place), observation, seen
 
     def log_prior(self, experience: int, pose: Pose2) -> float:
         """Log odds of a place, before anything speaks for it: how far odometry may have led astray since the robot was there,
@@ -380,17 +381,17 @@ class ExperienceMap(PoseGraph):
         self.evidence.end(len(self) if np.any(self.submap_of != self.submaps.current) else 0)
 
     def _measured(
-        self, experience: int, packet: Packet, seen: Recognition, verification: GeometricVerification | None
+        self, experience: int, observation: Pose2, seen: Recognition, verification: GeometricVerification | None
     ) -> tuple[Pose2, float] | None:
         """[ours] The observation and how far off it may be (m); as geometric verification measures it, None if it fails.
 
         test_scan_ties.py::test_the_map_asks_for_geometric_verification.
         """
-        observation, sigma = self._observation(experience, packet, seen), self._deviation(seen)
+        sigma = self._deviation(seen)
         if verification is None:
             return observation, sigma
         verified = verification.verified(self, experience, observation)
-        return (observation, sigma) if verified is not None and math.isinf(verified[1]) else verified
+        return verified and (verified[0], sigma if math.isinf(verified[1]) else verified[1])
 
     def _observation(self, experience: int, packet: Packet, seen: Recognition) -> Pose2:
         """The robot's pose in the frame of an experience, whose zone it may enter beside the centre."""
@@ -441,17 +442,19 @@ class ExperienceMap(PoseGraph):
         self.here = experience
         self.agrees = self.pose_filter.see(observation, sigma)
 
-    def _see_better(self, seen: Recognition) -> None:
+    def _see_better(self, seen: Recognition, verification: GeometricVerification | None) -> None:
         """[ours] The robot is nearer than before to where the active experience was made: measure the transition again.
 
         test_experience_map_transitions.py::test_the_best_observation_decides_the_transition.
         """
         arrival = self._arrival
         assert arrival is not None
-        arrival.came = arrival.came.compose(self._travel)
         turn = self.pose_filter.local.heading_rad if seen.facing_rad is None else seen.facing_rad
-        self._offset, self._travel = Pose2(0.0, 0.0, turn), IDENTITY
-        self._sigma = self._deviation(seen)
+        measured = self._measured(self.here, Pose2(0.0, 0.0, turn), seen, verification)
+        if measured is None or measured[1] >= self._sigma:
+            return
+        arrival.came = arrival.came.compose(self._travel)
+        (self._offset, self._sigma), self._travel = measured, IDENTITY
         self._kidnapped = False
         self.agrees = self.pose_filter.see(self._offset, self._sigma)
         self._measure(arrival)

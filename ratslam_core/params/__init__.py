@@ -85,7 +85,7 @@ class LocalViewParams:
         check_ranges(self)
 
 
-@kind("parameters of experience map/7")
+@kind("parameters of experience map/8")
 @dataclass(frozen=True, slots=True)
 class ExperienceMapParams:
     """Experiences, their links and the correction of the map (B 4, D 3)."""
@@ -115,6 +115,9 @@ class ExperienceMapParams:
     zone_offset: bool = param(True, "the robot enters an experience's zone beside its centre; off = at its centre")
     best_observation: bool = param(
         True, "a transition is measured where the robot comes nearest to the experience; off = where it enters the zone")
+    scan_matching: bool = param(
+        True, "the sonars measure where the robot is to a place that it recognises, and whether it is there; off = pose cells "
+        "and view alone", live=False)
     odometry_edges: bool = param(
         True, "odometry also ties experiences made one after the other when known ones lie between", live=False)
     pace_floor: bool = param(True, "a link takes at least as long as its length in the map at the robot's average pace")

@@ -54,7 +54,7 @@ def test_a_changed_file_is_refused(file: Path, tmp_path: Path) -> None:
         (lambda tree, _: tree["state"].update(kind="os:system"), "no class is of the kind 'os:system'"),
         (
             lambda tree, _: tree["state"].update(kind="ratslam/7"),
-            "ratslam/7 was made by another version .* has ratslam/4",
+            "ratslam/7 was made by another version .* has ratslam/5",
         ),
         (lambda tree, _: tree["state"].update(kind=3), "no class is of the kind '3'"),
         (lambda tree, _: tree["state"]["state"]["pose_cells"]["state"].update(more=1), "PoseCells differs in more"),

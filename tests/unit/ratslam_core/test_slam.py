@@ -81,7 +81,8 @@ ECHOES = np.array([1.0, 2.0, 3.0], np.float32)
 
 
 def test_sonars_draw_both_pictures() -> None:
-    grey = RatSlamParams(local_view=LocalViewParams(front_end="template"))
+    deafly = ExperienceMapParams(scan_matching=False)
+    grey = RatSlamParams(local_view=LocalViewParams(front_end="template"), experience_map=deafly)
     circle, brain = Circle(), RatSlam(grey, sonar_angles_rad=SONARS)
     deaf = RatSlam(grey)
     circle.advance(brain, 100, ranges_m=ECHOES)
