@@ -17,7 +17,7 @@ class GeometricVerification(Protocol):
     def verified(self, map_: Any, experience: int, observation: Pose2, /) -> tuple[Pose2, float] | None:
         """The robot in the frame of the experience, and give or take what (m), near where an observation puts it.
 
-        map_: an `ExperienceMap`. An infinite error: it cannot say, so the observation counts as it is. None: it is not there.
+        map_: an `ExperienceMap`. An infinite error: it is as imprecise as the observation. None: it is not there.
         """
         ...
 

@@ -32,6 +32,7 @@ import app.pilot.local_movement
 import ratslam_core.experience_map.places
 import ratslam_core.extensions.evidence
 import ratslam_core.extensions.odometry_edges
+import ratslam_core.extensions.scan_matching
 import ratslam_core.goal_memory
 import ratslam_core.local_view.echo_matcher
 import ratslam_core.local_view.front_ends.image_and_sonars
@@ -70,6 +71,7 @@ from ratslam_core import (
 )
 from ratslam_core.extensions.familiar_ground import FamiliarGround
 from ratslam_core.extensions.kidnap_detector import ScanChange
+from ratslam_core.extensions.scan_matching import ScanMatching
 from ratslam_core.pose_cells.activity_kernels import X, Y
 from ratslam_live import command_of
 from sim2d import SONAR_ANGLES_RAD, Drive, Simulator, load_world
@@ -236,6 +238,11 @@ def loops() -> None:
         made.evidence.observe(made, seen_by, made.submaps.current)
     ratslam_core.extensions.evidence.nats(0.5, 0)
     ratslam_core.extensions.odometry_edges.open_way_m(made.transitions, 0, 1)
+    scans = ScanMatching(_ANGLES)
+    for k in range(100):  # so far that the first were made before the way here
+        scans.sense(_RANGES, Odometry(1.5, 0.0, 0.1), 1)
+        scans.made(k)
+    scans.verified(made, 0, Pose2(0.0, 0.0, 0.0))
     local, bars = LocalMovement(_ANGLES, config.pilot.echo_s), Bars()
     bars.add(made.robot, 0.0, config.pilot)
     RouteFollower(0, bars).step(made, local, 0.1, config.pilot)
@@ -251,7 +258,7 @@ PARTS: dict[str, tuple[Callable[[], None], tuple[Any, ...]]] = {
                       ratslam_core.local_view.matcher, ratslam_core.local_view.view_links)),
     "loops": (loops, (ratslam_core.pose_graph.relaxation, ratslam_core.solvers.laplacian, ratslam_core.solvers.dijkstra,
                       ratslam_core.extensions.evidence, ratslam_core.extensions.odometry_edges,
-                      ratslam_core.experience_map.places, app.pilot.bars)),
+                      ratslam_core.extensions.scan_matching, ratslam_core.experience_map.places, app.pilot.bars)),
     "maps": (maps, (ratslam_core.goal_memory, ratslam_core.occupancy_grid)),
 }  # fmt: skip
 

@@ -48,8 +48,10 @@ class ScanMatching:
         self._angles = np.asarray(sonar_angles_rad, np.float64)
         n = len(self._angles)
         self._scans = np.zeros((256, n), np.float32)  # of each experience; 0 where there was none
-        self._recent = np.zeros((RECENT, 3 + n))  # x, y, heading by odometry, ranges
-        self._count = 0  # of recent scans ever
+        self._since = np.zeros(256, np.int64)  # the count of recent scans when it was made
+        self._recent = np.zeros((RECENT, n))  # scans of the way here
+        self._from = np.zeros((RECENT, 3))  # x, y, heading by odometry, where each was made
+        self._count = self._begun = 0  # of recent scans ever, and when it was carried away
         self._at = IDENTITY  # by odometry
         self._scan: Floats | None = None  # the newest
 
@@ -59,52 +61,58 @@ class ScanMatching:
             self._at = self._at.compose(moved_by(moved))
         if scan is None:
             return
-        last = self._recent[(self._count - 1) % RECENT]
-        way = math.hypot(self._at.x - last[0], self._at.y - last[1])
-        if self._count == 0 or way > STEP_M or abs(wrap_angle(self._at.heading_rad - last[2])) > STEP_RAD:
-            self._recent[self._count % RECENT] = self._at.x, self._at.y, self._at.heading_rad, *scan
+        self._scan, at = scan, self._at
+        x, y, heading = self._from[(self._count - 1) % RECENT].tolist()
+        turned = abs(wrap_angle(at.heading_rad - heading))
+        if self._count == self._begun or math.hypot(at.x - x, at.y - y) > STEP_M or turned > STEP_RAD:
+            self._from[self._count % RECENT] = at.x, at.y, at.heading_rad
+            self._recent[self._count % RECENT] = scan
             self._count += 1
-        self._scan = scan
 
     def forget(self) -> None:
         """The robot was carried away."""
-        self._count = 0
+        self._begun = self._count
 
     def made(self, experience: int) -> None:
         """An experience was just made here."""
         while experience >= len(self._scans):
-            self._scans = grown(self._scans)
+            self._scans, self._since = grown(self._scans), grown(self._since)
         self._scans[experience] = 0.0 if self._scan is None else self._scan
+        self._since[experience] = self._count
 
     def verified(self, map_: PoseGraph, experience: int, observation: Pose2) -> tuple[Pose2, float] | None:
         """The robot in the frame of an experience, and give or take what (m); None: echoes say that this is not there."""
         new, old = self._on_the_way(), self._around(map_, experience)
         if min(len(new), len(old)) < LEAST_POINTS:
             return observation, math.inf
-        picture = _picture(old)
-        x, y, heading = _laid(picture, new, observation.x, observation.y, observation.heading_rad)
-        apart = _apart(picture, new, 1, x, y, heading)
+        told = observation.x, observation.y, observation.heading_rad
+        x, y, heading, apart, rise, along = _matched(_picture(old), new, *told)
         if apart > AGREES_M:
             return None
-        aside, along = _least_aside(picture, new, x, y, heading)
-        if aside - apart >= LEAST_RISE_M:
-            return Pose2(x, y, wrap_angle(heading)), SIGMA_M2 / (aside - apart)
+        if rise >= LEAST_RISE_M:
+            return Pose2(x, y, wrap_angle(heading)), SIGMA_M2 / rise
         c, s = math.cos(along), math.sin(along)
         back = c * (observation.x - x) + s * (observation.y - y)
         return Pose2(x + back * c, y + back * s, wrap_angle(heading)), math.inf
 
+    @property
+    def _oldest(self) -> int:
+        """The oldest of the recent scans."""
+        return max(self._begun, self._count - RECENT)
+
     def _on_the_way(self) -> Floats:
         """Echoes of the last metres, in the robot's frame."""
-        recent = self._recent[: min(self._count, RECENT)]
+        recent = np.arange(self._oldest, self._count) % RECENT
         at = np.array([self._at.x, self._at.y, self._at.heading_rad])
-        return _echoes(recent[:, :3], recent[:, 3:], at, self._angles)
+        return _echoes(self._from[recent], self._recent[recent], at, self._angles)
 
     def _around(self, map_: PoseGraph, experience: int) -> Floats:
-        """Echoes of an experience and those made just before and after it, in its frame."""
+        """Echoes of an experience and those made just before and after it, in its frame; none that was also heard on the
+        way here, since that would agree with odometry whatever errors it has."""
         beside = slice(max(0, experience - BESIDE), min(len(map_), experience + BESIDE + 1))
-        own = map_.submap_of[beside] == map_.submap_of[experience]
+        own = (map_.submap_of[beside] == map_.submap_of[experience]) & (self._since[beside] <= self._oldest)
         poses, scans = map_.poses[beside][own], self._scans[beside][own].astype(np.float64)
-        return _echoes(poses, scans, map_.poses[experience], self._angles)
+        return _echoes(poses, scans, map_.poses[experience].copy(), self._angles)
 
 
 @njit(cache=True, nogil=True)
@@ -154,8 +162,20 @@ def _apart(picture: Singles, points: Floats, every: int, x: float, y: float, hea
 
 
 @njit(cache=True, nogil=True)
+def _matched(
+    picture: Singles, points: Floats, x0: float, y0: float, heading0: float
+) -> tuple[float, float, float, float, float, float]:
+    """The pose near (x0, y0, heading0) from which the points lie best on those of the picture; how far apart they then
+    are, by how much farther at least aside of it, and in which direction (rad) that is."""
+    x, y, heading = _laid(picture, points, x0, y0, heading0)
+    apart = _apart(picture, points, 1, x, y, heading)
+    aside, along = _least_aside(picture, points, x, y, heading)
+    return x, y, heading, apart, aside - apart, along
+
+
+@njit(cache=True, nogil=True)
 def _laid(picture: Singles, points: Floats, x0: float, y0: float, heading0: float) -> tuple[float, float, float]:
-    """The pose near (x0, y0, heading0) from which the points lie best on those of the picture."""
+    """First in coarse steps with every other point, then in finer ones with all."""
     x, y, heading, least = x0, y0, heading0, np.inf
     for i in range(-SEARCH, SEARCH + 1):
         for j in range(-SEARCH, SEARCH + 1):

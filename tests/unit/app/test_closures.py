@@ -30,7 +30,7 @@ def test_a_closure_has_the_map_before_it_and_as_its_correction_left_it() -> None
         until = maps[: round(last / 0.1) + 1]
         assert any(np.array_equal(closure.after_xy, step[:known]) for step in until[-12:] if len(step) >= known)
         assert closure.moved_m == pytest.approx(float(np.hypot(*(closure.after_xy - closure.before_xy).T).max()))
-    assert max(closure.moved_m for closure in closures) > 0.2  # the block was not where it was believed to be
+    assert max(closure.moved_m for closure in closures) > 0.1  # the block was not where it was believed to be
     first = closures[0]  # what is kept of it belongs to its time
     assert history.log.until(first.time_s - 0.1, session).closures == ()
     assert history.log.until(first.time_s, session).closures == (first,)

@@ -96,11 +96,11 @@ class _Says:
     ("verification", "active", "x"),
     [
         (None, 0, 0.0),
-        (_Says((Pose2(0.3, 0.0, 0.0), math.inf)), 0, 0.0),
+        (_Says((Pose2(0.3, 0.0, 0.0), math.inf)), 0, 0.3),
         (_Says((Pose2(0.3, 0.0, 0.0), 1e-6)), 0, 0.3),
         (_Says(None), 2, 0.4),
     ],
-    ids=["nobody", "who cannot say", "who measures", "who denies it"],
+    ids=["nobody", "who cannot say how precisely", "who measures", "who denies it"],
 )
 def test_the_map_asks_for_geometric_verification(verification: _Says | None, active: int, x: float) -> None:
     """The robot is 0.4 m from its first experience by odometry, and sees its view again, where its packet is."""

@@ -48,13 +48,14 @@ class _Map:
 class Visit:
     """A robot that drove two metres along a line, making an experience each 0.2 m, and drives there once more, aside."""
 
-    def __init__(self, corners: _Corners) -> None:
+    def __init__(self, corners: _Corners, *, stays: bool = False) -> None:
         self.corners, self.scans = corners, ScanMatching(ANGLES)
         self.poses = [Pose2(-1.0 + 0.2 * k, 0.0, 0.0) for k in range(10)]
         for k, pose in enumerate(self.poses):
             self.scans.sense(ranges(corners, pose), Odometry(2.0 * (k > 0), 0.0, 0.1), 1)
             self.scans.made(k)
-        self.scans.forget()
+        if not stays:
+            self.scans.forget()
         poses = np.array([(p.x, p.y, p.heading_rad) for p in self.poses])
         self.map = _Map(poses, np.zeros(10, np.int32))
 
@@ -119,6 +120,13 @@ def test_what_was_heard_before_a_kidnap_tells_nothing_of_after() -> None:
     assert math.hypot(found[0].x - 0.3, found[0].y - 0.25) < 0.15
 
 
+def test_no_echo_is_laid_over_itself() -> None:
+    """It would lie where odometry has it, whatever errors that has."""
+    visit = Visit(ROOM, stays=True)
+    observation = Pose2(0.6, 0.1, 0.0)
+    assert visit.told(observation) == (observation, math.inf)
+
+
 def test_the_way_counts_not_the_time() -> None:
     """A robot that stands, or is asked more often, remembers the same scans."""
     slow, quick = ScanMatching(ANGLES), ScanMatching(ANGLES)
@@ -128,6 +136,7 @@ def test_the_way_counts_not_the_time() -> None:
         slow.sense(scan, Odometry(0.0, 0.0, 0.1), 3)
         quick.sense(scan, Odometry(0.5 * (k > 0), 0.0, 0.1), 1)
     np.testing.assert_array_equal(slow._recent, quick._recent)
+    np.testing.assert_array_equal(slow._from, quick._from)
 
 
 def test_distances_are_those_of_a_literal_search() -> None:
