@@ -59,9 +59,9 @@ class ScanMatching:
         """The robot moved so in each of the beats, and then heard this, m from its middle."""
         for _ in range(beats):
             self._at = self._at.compose(moved_by(moved))
+        self._scan, at = scan, self._at
         if scan is None:
             return
-        self._scan, at = scan, self._at
         x, y, heading = self._from[(self._count - 1) % RECENT].tolist()
         turned = abs(wrap_angle(at.heading_rad - heading))
         if self._count == self._begun or math.hypot(at.x - x, at.y - y) > STEP_M or turned > STEP_RAD:
