@@ -313,7 +313,13 @@ class _Running:
         self._threads, self._counted_s = 1, -math.inf
 
     def ended(self) -> Iterable[list[tuple[Trial, Outcome]]]:
-        """What ends, as it does."""
+        """What ends, as it does. ValueError: the cluster has gone, whichever call to it was the first to find that out."""
+        try:
+            yield from self._ended()
+        except (CancelledError, OSError):
+            raise ValueError("the cluster has gone; the same command goes on where this one stopped") from None
+
+    def _ended(self) -> Iterable[list[tuple[Trial, Outcome]]]:
         from distributed import as_completed
 
         coming: Any = as_completed(loop=self._client.loop)
@@ -335,7 +341,7 @@ class _Running:
         try:
             outcomes: dict[str, Outcome] = {outcome.trial_id: outcome for outcome in future.result()}
         except CancelledError:
-            raise ValueError("the cluster has gone; the same command goes on where this one stopped") from None
+            raise
         except Exception as error:
             return self._tried(batch, f"{type(error).__name__}: {error}")
         self._learn(list(outcomes.values()))

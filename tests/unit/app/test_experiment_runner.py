@@ -167,7 +167,12 @@ if __name__ == "__main__":
 """
 
 
-def test_a_cluster_that_dies_is_told_of_and_what_had_come_is_kept(store: Store, tmp_path: Path) -> None:
+@pytest.mark.parametrize("count_every_s", [0.0, 1e9], ids=["asked for its threads", "asked for results"])
+def test_a_cluster_that_dies_is_told_of_and_what_had_come_is_kept(
+    store: Store, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, count_every_s: float
+) -> None:
+    """Whichever call finds out."""
+    monkeypatch.setattr("app.experiments.pool.COUNT_EVERY_S", count_every_s)
     script = tmp_path / "others_cluster.py"
     script.write_text(OTHERS, encoding="utf-8")
     environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[3])}
@@ -177,18 +182,23 @@ def test_a_cluster_that_dies_is_told_of_and_what_had_come_is_kept(store: Store, 
         stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
     ) as cluster:  # fmt: skip
 
-        def kill(_: object = None) -> None:
+        def kill() -> None:
             with contextlib.suppress(ProcessLookupError):
                 os.killpg(cluster.pid, signal.SIGKILL)
 
         try:
             assert cluster.stdout is not None
             address = cluster.stdout.readline().strip()
-            with (
-                pytest.raises(ValueError, match="the cluster has gone; the same command goes on"),
-                connected_to(address, None) as client,
-            ):
-                run_trials(trials, store, client, run=fake_trials.run, expected_s=0.1, on_ended=kill)
+            with connected_to(address, None) as client:
+
+                def kill_when_more_has_come(_: object) -> None:
+                    wait_until(lambda: all(one.status == "finished" for one in client.futures.values()), "more results")
+                    kill()
+
+                with pytest.raises(ValueError, match="the cluster has gone; the same command goes on"):
+                    run_trials(
+                        trials, store, client, run=fake_trials.run, expected_s=0.1, on_ended=kill_when_more_has_come
+                    )
         finally:
             kill()
     kept = len(trials) - len(pending(trials, store))
