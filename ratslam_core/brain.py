@@ -13,6 +13,7 @@ from disk import encode
 from ratslam_core.beats import Beats
 from ratslam_core.experience_map.cells_only import CellsOnly
 from ratslam_core.experience_map.experience_map import ExperienceMap
+from ratslam_core.extensions.echo_closures import EchoClosures
 from ratslam_core.extensions.exact_solver import ExactSolver
 from ratslam_core.extensions.familiar_ground import FamiliarGround, NewGround
 from ratslam_core.extensions.kidnap_detector import KidnapDetector, NeverKidnapped
@@ -69,6 +70,7 @@ class Brain:
             self.map_grid = MapGrid(sonar_angles_rad)
         matches = p.experience_map.scan_matching and len(sonar_angles_rad) > 0
         self.scans = ScanMatching(sonar_angles_rad) if matches else None
+        self.closures = EchoClosures()
         self.memories = Memories(self.goal_memory, self.occupancy, self.map_grid, p.occupancy)
         self.beats = Beats()
         self.relocalisations: int = 0  # how often the winning packet has jumped

@@ -5,10 +5,21 @@ A part whose class is named with `disk.kind` is included in the brain's digest a
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any, Protocol
 
 from ratslam_core.pose_graph.pose_graph import PoseGraph
 from ratslam_core.types import Bytes, Floats, Ints, Ints32, Odometry, Packet, Pose2, Recognition, Singles
+
+
+@dataclass(frozen=True, slots=True)
+class Matched:
+    """Where a robot is to a known experience, as another sense than the eyes measures it."""
+
+    pose: Pose2  # in the frame of the experience
+    sigma_m: float  # how far off that may be
+    apart_m: float  # how far apart both scans then are, in the mean
+    points: int  # of the scan with fewer
 
 
 class GeometricVerification(Protocol):
@@ -19,6 +30,10 @@ class GeometricVerification(Protocol):
 
         map_: an `ExperienceMap`. An infinite error: it is as imprecise as the observation. None: it is not there.
         """
+        ...
+
+    def match(self, map_: Any, experience: int, observation: Pose2, /) -> Matched | None:
+        """The same, whether or not it is there; None where that cannot be told."""
         ...
 
 

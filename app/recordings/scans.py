@@ -26,6 +26,7 @@ from numpy.typing import NDArray
 from app.recordings.recording import About
 from disk import kind
 from ratslam_core import ExperienceMap, Odometry, Pose2, wrap_angle, wrap_angles
+from ratslam_core.parts import Matched
 
 
 @kind("scan rules/1")
@@ -338,6 +339,10 @@ class ScanTies:
         believed = map_.pose(experience).inverse().compose(map_.robot_here)
         found = self._laid(map_, experience, believed, LEAST_OFF_M)
         return found or self._laid(map_, experience, observation, LEAST_OFF_M)
+
+    def match(self, _map: ExperienceMap, _experience: int, _observation: Pose2) -> Matched | None:
+        """A laser's scan is matched or not; how much that says for a place was not measured."""
+        return None
 
     def _tie(self, map_: ExperienceMap, old: int, found: Pose2, sigma_m: float) -> None:
         map_.tie(old, map_.here, found, sigma_m)

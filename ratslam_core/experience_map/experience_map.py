@@ -98,7 +98,7 @@ class ExperienceMap(PoseGraph):
         for _ in range(beats):
             self._move(odometry)
         if self.evidence.known and views is not None and seen.view >= 0:
-            self.evidence.observe(self, views, self.submaps.current)
+            self.evidence.observe(self, views, self.submaps.current, verification)
         if seen.recruited:
             self.forget_view(seen.view)
         before = self._departure()
@@ -142,14 +142,14 @@ class ExperienceMap(PoseGraph):
         deleted = [self._judge(row, reached) for row in rows if row >= 0]
         return any(deleted)
 
-    def tie(self, i: int, j: int, moved: Pose2, sigma_m: float) -> None:
-        """[ours] Something besides views measured where j lies in the frame of i, give or take `sigma_m`: a loop closure, no way.
+    def tie(self, i: int, j: int, moved: Pose2, sigma_m: float, *, way: bool = False) -> None:
+        """[ours] Something besides views measured where j lies in the frame of i, give or take `sigma_m`: a loop closure.
 
-        A laser does that (`app/recordings/scans.py`); nobody else does.
+        way: the robot can drive from one to the other. Lasers (`app/recordings/scans.py`) and `EchoClosures` do that.
         test_scan_ties.py::test_a_scan_ties_an_experience_to_an_old_one_where_it_belongs.
         """
         t = self.transitions
-        row = t.add(i, j, travelled=False)
+        row = t.add(i, j, travelled=way)
         t.chain[row] = False
         t.measure(row, moved, self._weight_of(sigma_m), t.move[row], 0.0)
         t.take_time(row, 0.0, 0.0)

@@ -31,7 +31,7 @@ from numba import njit
 
 from disk import kind
 from ratslam_core.params import EvidenceParams
-from ratslam_core.parts import LocalViewPart
+from ratslam_core.parts import GeometricVerification, LocalViewPart
 from ratslam_core.pose_graph.transitions import moved_by
 from ratslam_core.types import Flags, Floats, Ints, Ints32, Odometry, Pose2, wrap_angle, wrap_angles
 
@@ -68,6 +68,10 @@ NATS: Floats = np.array(
         [3.2, 3.2, 2.9, 2.1, 1.1, 0.2, -0.4, -0.9, -1.2, -1.4],
     ]
 )
+# What echoes say in a unit of evidence, by how far apart (m) they are from those of the place, at wrong ones that had agreed.
+APART_M: Floats = np.array([0.07, 0.10, 0.13, 0.16, 0.20, 0.25])
+APART_NATS: Floats = np.array([1.5, 0.7, 0.0, -0.5, -1.0, -1.5])
+MOST_UNHEARD = 2.0  # units for which echoes count at once
 X, Y, HEADING, ODDS, UNITS, SUBMAP, CEILING = range(7)  # of a row
 
 
@@ -98,7 +102,7 @@ class Belief:
     facing_rad: float  # of the robot, relative to that at which this view was taken
 
 
-@kind("evidence/3")
+@kind("evidence/4")
 class Evidence:
     """The hypotheses, and what speaks for each."""
 
@@ -113,6 +117,7 @@ class Evidence:
         self._rows = np.zeros((MOST, 7))
         self._count = 0
         self._units = 0.0  # of way since the last observation
+        self._unheard = 0.0  # and since echoes were last asked
         self._quiet = 0.0  # units of way since something was last seen where the robot cannot be
 
     def begin(self, robot: Pose2, submap: int, known: int, *, sure: bool) -> None:
@@ -154,10 +159,13 @@ class Evidence:
             moved, facing = self.belief.pose.compose(moved_by(odometry)), wrap_angle(self.belief.facing_rad + turn)
             self.belief = Belief(moved, self.belief.log_odds, self.belief.experience, facing)
 
-    def observe(self, map_: Map, views: LocalViewPart, submap: int) -> None:
+    def observe(
+        self, map_: Map, views: LocalViewPart, submap: int, verification: GeometricVerification | None = None
+    ) -> None:
         """What the local view sees speaks for the hypotheses where it is expected, and against the others.
 
-        submap: where the robot is mapping, which is no hypothesis unless it is in doubt.
+        submap: where the robot is mapping, which is no hypothesis unless it is in doubt. verification: another sense, which
+        speaks for and against them, too.
         """
         among = np.flatnonzero(map_.views >= 0)
         if len(among) < LEAST_VIEWS or (self.in_doubt and self._units < LEAST_UNITS):
@@ -176,6 +184,9 @@ class Evidence:
         best = np.argsort(apart, kind="stable")[:SUGGESTED]
         facing: Floats = shifts[best] * np.float64(views.column_rad)
         self._suggest(map_, among[best], facing, apart[best] / usual, max(units, LEAST_PULL))
+        self._unheard += units
+        if verification is not None and self._unheard >= 1.0:
+            self._hear(map_, verification)
         least = max(self.here, *self.hypotheses[:, ODDS], 0.0) - DOUBTED if self.in_doubt else FORGOTTEN
         self._count = _merge(self._rows, self._count, least, self.cell_m)
         self._believe(map_, views, known)
@@ -189,6 +200,28 @@ class Evidence:
             there.ring[there.ring > 0] = -1  # who explores is beside known ground all the time, perhaps behind its wall
             _weigh(here, there.ring, there.apart / usual, units)
             self.here = float(here[0, ODDS])
+
+    def _hear(self, map_: Map, verification: GeometricVerification) -> None:
+        """Echoes say how like each hypothesis is to the place that it claims, and where exactly that is.
+
+        test_evidence.py::test_echoes_say_which_of_two_places_it_is_and_where.
+        """
+        poses, submaps = map_.poses[: self.known], map_.submap_of[: self.known]
+        units, self._unheard = min(self._unheard, MOST_UNHEARD), 0.0
+        for row in self.hypotheses:
+            away = np.where(submaps == row[SUBMAP], np.hypot(poses[:, 0] - row[X], poses[:, 1] - row[Y]), np.inf)
+            nearest = int(np.argmin(away))
+            place = Pose2(*poses[nearest].tolist())
+            beside = away[nearest] < ONE_PLACE * self.cell_m
+            found = (
+                verification.match(map_, nearest, place.inverse().compose(Pose2(*row[:3].tolist()))) if beside else None
+            )
+            if found is None:
+                continue
+            row[ODDS] = min(row[ODDS] + units * float(np.interp(found.apart_m, APART_M, APART_NATS)), row[CEILING])
+            if found.sigma_m < SAME / 2 * self.cell_m:
+                there = place.compose(found.pose)
+                row[[X, Y, HEADING]] = there.x, there.y, there.heading_rad
 
     def _suggest(self, map_: Map, experiences: Ints, facing: Floats, likeness: Floats, units: float) -> None:
         """The best views say more exactly where old hypotheses are, or begin new ones."""

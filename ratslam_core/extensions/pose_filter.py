@@ -13,7 +13,8 @@ import math
 from disk import kind
 from ratslam_core.types import IDENTITY, Pose2, wrap_angle
 
-SNAP, SNAP_RAD = 4.0, 0.8  # cells; an observation farther off, or turned by more, is believed at once
+SNAP, SNAP_RAD = 4.0, 0.8  # cells; an observation farther off, or turned by more, is believed at once ...
+SNAP_SIGMA = 3.0  # ... if that is more than so many of its deviations, too
 LEAST_SIGMA = 0.24  # cells: the error of the estimate is never taken as smaller, so that it can follow the map
 
 
@@ -46,7 +47,7 @@ class PoseFilter:
         """The robot was observed at `observation`, give or take `sigma_m`. Returns whether that agrees with the pose so far."""
         dx, dy = observation.x - self.local.x, observation.y - self.local.y
         turn = wrap_angle(observation.heading_rad - self.local.heading_rad)
-        if math.hypot(dx, dy) > SNAP * self.cell_m or abs(turn) > SNAP_RAD:
+        if math.hypot(dx, dy) > max(SNAP * self.cell_m, SNAP_SIGMA * sigma_m) or abs(turn) > SNAP_RAD:
             self.local, self.sigma_m = observation, sigma_m
             return False
         own = max(self.sigma_m, LEAST_SIGMA * self.cell_m)

@@ -4,22 +4,24 @@ A view is much the same a metre farther on or aside, the more so the larger the 
 in its zone the robot is. Walls say it to a decimetre: the echoes of the last metres, moved along by odometry, are laid over
 those that were heard where the experience was made and around it, near where the observation puts the robot. What little walls
 say of a direction, as along a bare corridor, the observation decides. Where the echoes agree nowhere near, it is not that place
-(`parts.GeometricVerification`). test_scan_matching.py::{test_echoes_say_where_in_a_room_the_robot_is,
-test_along_a_corridor_the_observation_decides, test_another_room_is_not_confirmed}.
+(`parts.GeometricVerification`). Where none can be compared, as in the middle of a hall, an observation is worth little: there
+views are alike for metres. test_scan_matching.py::{test_echoes_say_where_in_a_room_the_robot_is,
+test_along_a_corridor_the_observation_decides, test_another_room_is_not_confirmed, test_an_observation_in_a_hall_is_worth_little}.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import Protocol
 
 import numpy as np
 from numba import njit
 
 from disk import kind
-from ratslam_core.pose_graph.pose_graph import PoseGraph
+from ratslam_core.parts import Matched
 from ratslam_core.pose_graph.transitions import moved_by
-from ratslam_core.types import IDENTITY, Floats, Odometry, Pose2, Singles, grown, wrap_angle
+from ratslam_core.types import IDENTITY, Flags, Floats, Ints32, Odometry, Pose2, Singles, grown, wrap_angle
 
 RECENT = 60  # scans of the way here that are kept ...
 STEP_M, STEP_RAD = 0.1, 0.3  # ... one for each way, or turn, of so much
@@ -37,10 +39,22 @@ OFF_COST, TURN_COST = 0.12, 0.2  # m per m², and per rad², off the observation
 ASIDE_M, DIRECTIONS = 0.4, 16  # a pose so far aside fits worse, in whichever direction ...
 LEAST_RISE_M = 0.015  # ... but where it does by less than this, walls say nothing of that direction
 SIGMA_M2 = 0.004  # m²: how far off a match may be, times by how much a pose aside fits worse
+ALONG_M = 0.5  # how far off it may be along such a direction
+UNHEARD_M = 1.0  # how far off an observation may be where nothing is heard
 AGREES_M = 0.25  # mean distance between echoes above which this is another place
 
 
-@kind("scan matching/1")
+class Map(Protocol):
+    """What has to be known of an experience map."""
+
+    @property
+    def poses(self) -> Floats: ...
+    @property
+    def submap_of(self) -> Ints32: ...
+    def __len__(self) -> int: ...
+
+
+@kind("scan matching/2")
 class ScanMatching:
     """Keeps the scan of each experience, and those of the way here."""
 
@@ -80,20 +94,35 @@ class ScanMatching:
         self._scans[experience] = 0.0 if self._scan is None else self._scan
         self._since[experience] = self._count
 
-    def verified(self, map_: PoseGraph, experience: int, observation: Pose2) -> tuple[Pose2, float] | None:
+    def verified(self, map_: Map, experience: int, observation: Pose2) -> tuple[Pose2, float] | None:
         """The robot in the frame of an experience, and give or take what (m); None: echoes say that this is not there."""
+        found = self.match(map_, experience, observation)
+        if found is None:
+            return observation, UNHEARD_M if self._count > self._begun else math.inf
+        return None if found.apart_m > AGREES_M else (found.pose, found.sigma_m)
+
+    def match(self, map_: Map, experience: int, observation: Pose2) -> Matched | None:
+        """The robot in the frame of an experience, as echoes have it near an observation; None where too few are heard."""
         new, old = self._on_the_way(), self._around(map_, experience)
-        if min(len(new), len(old)) < LEAST_POINTS:
-            return observation, math.inf
+        points = min(len(new), len(old))
+        if points < LEAST_POINTS:
+            return None
         told = observation.x, observation.y, observation.heading_rad
         x, y, heading, apart, rise, along = _matched(_picture(old), new, *told)
-        if apart > AGREES_M:
-            return None
         if rise >= LEAST_RISE_M:
-            return Pose2(x, y, wrap_angle(heading)), SIGMA_M2 / rise
+            return Matched(Pose2(x, y, wrap_angle(heading)), SIGMA_M2 / rise, apart, points)
         c, s = math.cos(along), math.sin(along)
         back = c * (observation.x - x) + s * (observation.y - y)
-        return Pose2(x + back * c, y + back * s, wrap_angle(heading)), math.inf
+        return Matched(Pose2(x + back * c, y + back * s, wrap_angle(heading)), ALONG_M, apart, points)
+
+    @property
+    def count(self) -> int:
+        """How many scans of its way it has kept so far, one for each step."""
+        return self._count
+
+    def before(self, experiences: int) -> Flags:
+        """Which of the first so many experiences were made before all scans of the way here."""
+        return self._since[:experiences] <= self._oldest
 
     @property
     def _oldest(self) -> int:
@@ -106,11 +135,11 @@ class ScanMatching:
         at = np.array([self._at.x, self._at.y, self._at.heading_rad])
         return _echoes(self._from[recent], self._recent[recent], at, self._angles)
 
-    def _around(self, map_: PoseGraph, experience: int) -> Floats:
+    def _around(self, map_: Map, experience: int) -> Floats:
         """Echoes of an experience and those made just before and after it, in its frame; none that was also heard on the
         way here, since that would agree with odometry whatever errors it has."""
         beside = slice(max(0, experience - BESIDE), min(len(map_), experience + BESIDE + 1))
-        own = (map_.submap_of[beside] == map_.submap_of[experience]) & (self._since[beside] <= self._oldest)
+        own = (map_.submap_of[beside] == map_.submap_of[experience]) & self.before(len(map_))[beside]
         poses, scans = map_.poses[beside][own], self._scans[beside][own].astype(np.float64)
         return _echoes(poses, scans, map_.poses[experience].copy(), self._angles)
 

@@ -91,6 +91,9 @@ class _Says:
     def verified(self, _map: object, _experience: int, _observation: Pose2) -> tuple[Pose2, float] | None:
         return self.answer
 
+    def match(self, _map: object, _experience: int, _observation: Pose2) -> None:
+        """It cannot tell."""
+
 
 @pytest.mark.parametrize(
     ("verification", "active", "x"),

@@ -17,6 +17,7 @@ from ratslam_core.extensions import evidence as law
 from ratslam_core.extensions.evidence import AGAINST, FOR, LIKENESS, NATS, PRIOR, Evidence, nats
 from ratslam_core.extensions.submaps import Merge, Submaps, move
 from ratslam_core.params import EvidenceParams
+from ratslam_core.parts import Matched
 from ratslam_core.pose_graph.transitions import Transitions
 
 from .drives import CELL_M, SHAPE, relative
@@ -241,6 +242,7 @@ class Robot:
         self.pose = Pose2(0.0, 0.0, 0.0)
         self.views = Views([])
         self.confirmed = True
+        self.echoes: dict[int, Matched] = {}
         self.recognises = False
         self.drive(ticks)
         self.recognises = recognises
@@ -268,6 +270,10 @@ class Robot:
     def verified(self, _map: object, _experience: int, observation: Pose2) -> tuple[Pose2, float] | None:
         return (observation, math.inf) if self.confirmed else None
 
+    def match(self, _map: object, experience: int, _observation: Pose2) -> Matched | None:
+        """What its sonars say of a place where it may be."""
+        return self.echoes.get(experience)
+
     def carry(self, to: Pose2, *, noticed: bool = True) -> None:
         if noticed:
             self.map.declare_kidnapped()
@@ -277,6 +283,28 @@ class Robot:
     def off_m(self) -> float:
         """How far from the truth it believes to be, on the map."""
         return math.hypot(self.map.robot.x - self.pose.x, self.map.robot.y - self.pose.y)
+
+
+def test_echoes_say_which_of_two_places_it_is_and_where() -> None:
+    """They raise the odds of one, lower those of the other, and say nothing of a third; who agrees moves to where they agree."""
+    robot = Robot()
+    map_, evidence = robot.map, robot.map.evidence
+    robot.carry(Pose2(2.0, 0.1, 0.0))
+    at = [map_.pose(k) for k in (3, 12, 20)]
+    evidence._rows[:3] = [(p.x + 0.1, p.y, p.heading_rad, 1.0, 2.0, map_.submap_of[0], 1.5) for p in at]
+    evidence._count = 3
+    robot.echoes = {
+        3: Matched(Pose2(0.15, -0.05, 0.02), 0.05, 0.06, 99),
+        12: Matched(Pose2(0.0, 0.0, 0.0), 0.5, 0.3, 99),
+    }
+    evidence._unheard = 1.0  # unit of way
+    evidence._hear(map_, robot)
+    rows = evidence.hypotheses
+    assert rows[0, 3] == 1.5, "no more than can be said for any place"
+    assert rows[1, 3] < 0.0
+    assert rows[2].tolist() == [at[2].x + 0.1, at[2].y, at[2].heading_rad, 1.0, 2.0, map_.submap_of[0], 1.5]
+    assert rows[0, :3] == pytest.approx((at[0].x + 0.15, at[0].y - 0.05, at[0].heading_rad + 0.02))
+    assert rows[1, :2] == pytest.approx((at[1].x + 0.1, at[1].y)), "which is off by too much to say where"
 
 
 def test_what_is_believed_changes_no_map_and_a_submap_is_merged_as_a_whole() -> None:

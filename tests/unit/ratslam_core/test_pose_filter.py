@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from ratslam_core import Pose2
-from ratslam_core.extensions.pose_filter import LEAST_SIGMA, SNAP, SNAP_RAD, PoseFilter
+from ratslam_core.extensions.pose_filter import LEAST_SIGMA, SNAP, SNAP_RAD, SNAP_SIGMA, PoseFilter
 from ratslam_core.types import wrap_angle
 
 CELL_M = 0.25
@@ -50,6 +50,14 @@ def test_an_uncertain_observation_moves_the_estimate_little() -> None:
     assert moved[-1] < 0.01
 
 
+def test_an_observation_that_may_be_off_by_metres_is_weighed_however_far_off() -> None:
+    """Else a robot would jump through a hall in which views are alike for metres."""
+    for off_m, snaps in ((SNAP_SIGMA - 0.1, False), (SNAP_SIGMA + 0.1, True)):
+        belief = believing(Pose2(0.0, 0.0, 0.0), 0.3)
+        assert belief.see(Pose2(off_m, 0.0, 0.0), 1.0) is not snaps
+        assert (belief.local.x == off_m) is snaps
+
+
 def test_an_observation_that_disagrees_altogether_is_believed_at_once() -> None:
     """Farther or more turned than the limits; as far and as turned is weighed. So is one that is perfect."""
     for observation, snaps in (
@@ -60,8 +68,8 @@ def test_an_observation_that_disagrees_altogether_is_believed_at_once() -> None:
         (Pose2(0.0, 0.0, SNAP_RAD), False),
     ):
         belief = believing(Pose2(0.0, 0.0, 0.0), 0.05)
-        assert belief.see(observation, 0.4) is not snaps
-        assert (belief.local == observation) is (belief.sigma_m == 0.4) is snaps
+        assert belief.see(observation, 0.2) is not snaps
+        assert (belief.local == observation) is (belief.sigma_m == 0.2) is snaps
     belief = believing(Pose2(0.1, 0.2, 0.3), 0.2)
     belief.see(Pose2(0.0, 0.0, 0.0), 0.0)
     assert (belief.local, belief.sigma_m) == (Pose2(0.0, 0.0, 0.0), 0.0)

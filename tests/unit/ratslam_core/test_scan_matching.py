@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ratslam_core import Odometry, Pose2
 from ratslam_core.extensions import scan_matching
-from ratslam_core.extensions.scan_matching import AGREES_M, CELL_M, NEAR, ScanMatching
+from ratslam_core.extensions.scan_matching import AGREES_M, ALONG_M, CELL_M, NEAR, UNHEARD_M, ScanMatching
 
 ANGLES = tuple(math.radians(a) for a in (90, 50, 30, 10, -10, -30, -50, -90))
 ROOM = ((-2.0, -1.5), (3.0, -1.5), (3.0, 2.0), (1.0, 2.0), (1.0, 1.2), (-2.0, 1.2))  # its corners, m: an L
@@ -84,7 +84,7 @@ def test_echoes_say_where_in_a_room_the_robot_is(off: Pose2) -> None:
 
 
 def test_along_a_corridor_the_observation_decides() -> None:
-    """Its walls say how far it is to either side, and nothing else: neither where along it the robot is, nor how precisely."""
+    """Its walls say how far it is to either side, and nothing else."""
     visit = Visit(CORRIDOR)
     visit.come(Pose2(0.3, 0.3, 0.0))
     found = visit.told(Pose2(-0.2, -0.1, 0.0))
@@ -92,7 +92,7 @@ def test_along_a_corridor_the_observation_decides() -> None:
     pose, sigma_m = found
     assert pose.x == pytest.approx(-0.2, abs=0.05)
     assert pose.y == pytest.approx(0.3, abs=0.1)
-    assert sigma_m == math.inf
+    assert sigma_m == ALONG_M
 
 
 def test_another_room_is_not_confirmed() -> None:
@@ -101,13 +101,14 @@ def test_another_room_is_not_confirmed() -> None:
     assert visit.told(Pose2(0.3, 0.25, 0.1)) is None
 
 
-def test_who_hears_little_says_nothing() -> None:
+def test_an_observation_in_a_hall_is_worth_little() -> None:
+    """Where nothing was heard at all, it is taken as it is; where a robot hears no wall, views are alike for metres."""
     visit = Visit(ROOM)
     observation = Pose2(0.2, 0.1, 0.0)
     assert visit.told(observation) == (observation, math.inf), "nothing was heard since it was carried"
     nowhere = ((-900.0, -900.0), (900.0, -900.0), (900.0, 900.0), (-900.0, 900.0))
     visit.come(Pose2(0.2, 0.1, 0.0), nowhere)
-    assert visit.told(observation) == (observation, math.inf), "no wall is within reach"
+    assert visit.told(observation) == (observation, UNHEARD_M), "no wall is within reach"
 
 
 def test_what_was_heard_before_a_kidnap_tells_nothing_of_after() -> None:
@@ -124,7 +125,7 @@ def test_no_echo_is_laid_over_itself() -> None:
     """It would lie where odometry has it, whatever errors that has."""
     visit = Visit(ROOM, stays=True)
     observation = Pose2(0.6, 0.1, 0.0)
-    assert visit.told(observation) == (observation, math.inf)
+    assert visit.told(observation) == (observation, UNHEARD_M)
 
 
 def test_the_way_counts_not_the_time() -> None:
