@@ -8,7 +8,8 @@
 fit: robots drive over ground that they know. How alike are the views near where they truly are, and those near a wrong
 place that looked right one or two units of way before? The logarithm of the ratio of both shares is what an observation
 says. Calibrated: given a wrong place, the mean of e to that power is at most 1. Each world is asked with the curves that the
-other worlds give, too.
+other worlds give, too. The same for echoes: how far apart are they from those of the nearest experience, where they agreed
+a unit of way before?
 
 prior: robots are carried as below. Of the places that views suggest while no hypothesis is right, some are. The prior is the
 log odds that predict how many, together with what each view says for its place.
@@ -36,7 +37,20 @@ from numpy.typing import NDArray
 
 from app.config import Config
 from app.session import Session
-from ratslam_core.extensions.evidence import AGAINST, CEILING, FOR, LIKE, LIKENESS, NATS, ODDS, PRIOR, RINGS, UNITS
+from ratslam_core.extensions.evidence import (
+    AGAINST,
+    APART_M,
+    APART_NATS,
+    CEILING,
+    FOR,
+    LIKE,
+    LIKENESS,
+    NATS,
+    ODDS,
+    PRIOR,
+    RINGS,
+    UNITS,
+)  # fmt: skip
 from ratslam_core.local_view.front_ends import FRONT_ENDS
 from ratslam_core.types import Pose2, wrap_angles
 from sim2d import load_world, world_names
@@ -45,6 +59,8 @@ WORLDS = ("office", "living", "campus", "corridors", "two-goals", "twins")
 SEEDS = (910001, 910002)
 OFF: dict[str, float | int | bool | str] = {"goal_memory.enabled": False, "occupancy.enabled": False}
 EDGES = np.array([0.0, *(LIKENESS[:-1] + LIKENESS[1:]) / 2, 9.0])
+AGREE_M = 0.16  # echoes no farther apart agree
+BESIDE_M = 1.0  # the nearest experience
 WRONG_M, WRONG_RAD = 2.0, 1.0  # a place is wrong if it is so far from the true one, or turned so far
 SECONDS, EVERY_UNIT = 300, 0.25
 NEAR_RIGHT_M, NEAR_RIGHT_RAD, STAYS = 1.0, 0.6, 6  # ticks
@@ -96,6 +112,7 @@ class _Wrong:
     x: float
     y: float
     heading: float
+    agrees: bool  # the echoes with those of the place
     units: float = 0.0
 
     def move(self, way: float, turn: float) -> None:
@@ -105,14 +122,16 @@ class _Wrong:
 
 
 def _likenesses(job: Job) -> Rows:
-    """Rows: 1 for the true place, 0 for a wrong one; then the likeness of the nearest views of each ring, NaN for none."""
+    """Rows: 1 for the true place, 0 for a wrong one; then the likeness of the nearest views of each ring, NaN for none; and
+    how far apart echoes are, NaN where they did not agree a unit of way before.
+    """
     # Along walls, over the same ground again and again: else it would seek new ground, where there is nothing to compare with.
     session = _explored(job, **{"pilot.seek": False})
     map_, view = session.brain.experience_map, session.brain.local_view
     births, kept = session.evaluation.births(len(map_)), map_.views.copy()
     rows: list[list[float]] = []
     wrong: list[_Wrong] = []
-    units = 0.0
+    units, agreed = 0.0, False
     for _ in range(SECONDS * 10):
         session.tick()
         way, turn = session.odometry.speed * session.odometry.dt, session.odometry.yaw_rate * session.odometry.dt
@@ -125,10 +144,26 @@ def _likenesses(job: Job) -> Rows:
         known = np.where(map_.views[: len(kept)] == kept, kept, -1)
         looking = _Looking(session, births, known)
         truth = session.simulator.truth
-        rows.append([1.0, *looking.rings(truth.x, truth.y, truth.heading_rad)])
-        rows += [[0.0, *looking.rings(p.x, p.y, p.heading)] for p in wrong if 1.0 <= p.units < 1.0 + EVERY_UNIT]
+        here = truth.x, truth.y, truth.heading_rad
+        apart_m = looking.apart_m(*here)
+        rows.append([1.0, *looking.rings(*here), apart_m if agreed else math.nan])
+        agreed = apart_m <= AGREE_M
+        for p in wrong:
+            if 1.0 <= p.units < 1.0 + EVERY_UNIT:
+                there = p.x, p.y, p.heading
+                rows.append([0.0, *looking.rings(*there), looking.apart_m(*there) if p.agrees else math.nan])
         wrong = [place for place in wrong if place.units < 1.0 + EVERY_UNIT][-40:] + looking.wrong(wrong)
     return np.array(rows)
+
+
+class _True:
+    """The experiences where they truly were made."""
+
+    def __init__(self, births: Rows) -> None:
+        self.poses, self.submap_of = births[:, :3].copy(), np.zeros(len(births), np.int32)
+
+    def __len__(self) -> int:
+        return len(self.poses)
 
 
 class _Looking:
@@ -136,7 +171,7 @@ class _Looking:
 
     def __init__(self, session: Session, births: Rows, known: NDArray[np.int64]) -> None:
         self._truth, self._view = session.simulator.truth, session.brain.local_view
-        self._births, self._known = births, known
+        self._births, self._known, self._scans = births, known, session.brain.scans
         self._own = np.flatnonzero(known >= 0)
         self._apart, self._shifts = self._view.apart_at(known[self._own], np.zeros(len(self._own), np.int64), 2)
         self._usual = max(float(np.partition(self._apart, len(self._apart) // 10)[len(self._apart) // 10]), 1e-9)
@@ -155,6 +190,16 @@ class _Looking:
             found.append(float(self._view.apart_at(self._known[which], shifts, 2)[0].min()) / self._usual)
         return found
 
+    def apart_m(self, x: float, y: float, heading: float) -> float:
+        """How far apart the echoes of now are from those of the nearest experience; NaN if none is near or too few are heard."""
+        away = np.hypot(self._births[:, 0] - x, self._births[:, 1] - y)
+        nearest = int(np.argmin(away))
+        if self._scans is None or away[nearest] > BESIDE_M:
+            return math.nan
+        observation = Pose2(*self._births[nearest, :3].tolist()).inverse().compose(Pose2(x, y, heading))
+        found = self._scans.match(_True(self._births), nearest, observation)
+        return math.nan if found is None else found.apart_m
+
     def wrong(self, others: Sequence[_Wrong]) -> list[_Wrong]:
         """At most two new places that look right and are wrong, apart from these."""
         found: list[_Wrong] = []
@@ -165,7 +210,7 @@ class _Looking:
             off = off_m > WRONG_M or abs(math.remainder(heading - self._truth.heading_rad, math.tau)) > WRONG_RAD
             new = all(math.hypot(x - p.x, y - p.y) > 0.7 for p in (*others, *found))
             if off and new and self._apart[i] <= LIKE * self._usual and len(found) < 2:
-                found.append(_Wrong(x, y, heading))
+                found.append(_Wrong(x, y, heading, self.apart_m(x, y, heading) <= AGREE_M))
         return found
 
 
@@ -174,6 +219,7 @@ def _print_fit(told: Sequence[tuple[str, Rows]]) -> None:
     print("likeness           " + " ".join(f"{r:5.2f}" for r in LIKENESS))
     for ring, (near_m, near_rad) in enumerate(RINGS):
         print(f"{near_m:.1f} m, {near_rad:.2f} rad:  " + " ".join(f"{said:5.1f}" for said in _curve(everything, ring)))
+    _print_echoes(told)
     print(
         "\nnats at the true place, at wrong ones, mean of e^nats there (calibrated: <= 1); again by the others' curves"
     )
@@ -184,18 +230,34 @@ def _print_fit(told: Sequence[tuple[str, Rows]]) -> None:
         print(f"{world:10s} {_calibration(own, NATS)}   {_calibration(own, np.array(curves)) if others else '-'}")
 
 
-def _curve(rows: Rows, ring: int) -> Rows:
+def _print_echoes(told: Sequence[tuple[str, Rows]]) -> None:
+    """The curve of the mean of the worlds, and what that in use says in each."""
+    edges = np.array([0.0, *(APART_M[:-1] + APART_M[1:]) / 2, 9.0])
+    names, echoes = list(dict.fromkeys(name for name, _ in told)), 1 + len(RINGS)
+    own = {each: np.concatenate([rows for name, rows in told if name == each]) for each in names}
+    curve = np.mean([_curve(rows, echoes - 1, edges) for rows in own.values()], axis=0)
+    print("\nechoes apart, m    " + " ".join(f"{apart:5.2f}" for apart in APART_M))
+    print("nats               " + " ".join(f"{said:5.1f}" for said in curve))
+    for name, rows in own.items():
+        heard = rows[~np.isnan(rows[:, echoes])]
+        nats: Rows = np.interp(heard[:, echoes], APART_M, APART_NATS)
+        true = heard[:, 0] == 1.0
+        if 0 < np.count_nonzero(true) < len(true):
+            print(f"{name:10s} {nats[true].mean():5.2f} {nats[~true].mean():5.2f} {np.exp(nats[~true]).mean():5.2f}")
+
+
+def _curve(rows: Rows, ring: int, edges: Rows = EDGES) -> Rows:
     shares: list[Rows] = []
     for kind in (1.0, 0.0):
         likeness = rows[rows[:, 0] == kind][:, 1 + ring]
-        counts = np.histogram(likeness[~np.isnan(likeness)], EDGES)[0] + 0.5
+        counts = np.histogram(likeness[~np.isnan(likeness)], edges)[0] + 0.5
         shares.append(counts / counts.sum())
     return np.log(shares[0] / shares[1])
 
 
 def _calibration(rows: Rows, curves: Rows) -> str:
     """What the observations say for the true places, and for the wrong ones, by these curves, one for each ring."""
-    told = ~np.isnan(rows[:, 1:])
+    told = ~np.isnan(rows[:, 1 : 1 + len(curves)])
     said = np.zeros(told.shape)
     for ring in range(len(curves)):
         said[:, ring] = np.interp(rows[:, 1 + ring], LIKENESS, curves[ring])

@@ -116,7 +116,7 @@ class ExperienceMapParams:
     best_observation: bool = param(
         True, "a transition is measured where the robot comes nearest to the experience; off = where it enters the zone")
     scan_matching: bool = param(
-        True, "the sonars measure where the robot is to a place that it recognises, and whether it is there; off = pose cells "
+        True, "the sonars measure where the robot is to an old place, and whether it is there, and close loops; off = pose cells "
         "and view alone", live=False)
     odometry_edges: bool = param(
         True, "odometry also ties experiences made one after the other when known ones lie between", live=False)

@@ -44,8 +44,8 @@ ADDITIONS = (
     ),
     Addition(
         "scan matching",
-        "the sonars measure where the robot is to a place that it recognises, and whether it is there",
-        "a view is much the same a metre aside, and half of the closures were off by more than two decimetres",
+        "the sonars measure where the robot is to an old place, and whether it is there, and close loops",
+        "a view is much the same a metre aside, in a hall for metres, and is known from one side only",
         {"experience_map.scan_matching": False},
     ),
     Addition(
