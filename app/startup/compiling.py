@@ -233,9 +233,6 @@ def loops() -> None:
         seen_by.observe(rng.integers(0, 256, (48, 64), np.uint8), None, _RANGES)
     made.params = config.experience_map
     made.declare_kidnapped()
-    for _ in range(3):
-        made.evidence.move(Odometry(0.3, 0.1, 0.1))
-        made.evidence.observe(made, seen_by, made.submaps.current)
     ratslam_core.extensions.evidence.nats(0.5, 0)
     ratslam_core.extensions.odometry_edges.open_way_m(made.transitions, 0, 1)
     scans = ScanMatching(_ANGLES)
@@ -243,6 +240,9 @@ def loops() -> None:
         scans.sense(_RANGES, Odometry(1.5, 0.0, 0.1), 1)
         scans.made(k)
     scans.verified(made, 0, Pose2(0.0, 0.0, 0.0))
+    for _ in range(9):
+        made.evidence.move(Odometry(0.3, 0.1, 0.1))
+        made.evidence.observe(made, seen_by, made.submaps.current, scans)
     local, bars = LocalMovement(_ANGLES, config.pilot.echo_s), Bars()
     bars.add(made.robot, 0.0, config.pilot)
     RouteFollower(0, bars).step(made, local, 0.1, config.pilot)

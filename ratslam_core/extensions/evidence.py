@@ -206,16 +206,13 @@ class Evidence:
 
         test_evidence.py::test_echoes_say_which_of_two_places_it_is_and_where.
         """
-        poses, submaps = map_.poses[: self.known], map_.submap_of[: self.known]
         units, self._unheard = min(self._unheard, MOST_UNHEARD), 0.0
-        for row in self.hypotheses:
-            away = np.where(submaps == row[SUBMAP], np.hypot(poses[:, 0] - row[X], poses[:, 1] - row[Y]), np.inf)
-            nearest = int(np.argmin(away))
-            place = Pose2(*poses[nearest].tolist())
-            beside = away[nearest] < ONE_PLACE * self.cell_m
-            found = (
-                verification.match(map_, nearest, place.inverse().compose(Pose2(*row[:3].tolist()))) if beside else None
-            )
+        reach_m = ONE_PLACE * self.cell_m
+        nearest = _beside(self.hypotheses, map_.poses[: self.known], map_.submap_of[: self.known], reach_m)
+        for h in np.flatnonzero(nearest >= 0):
+            row, place = self.hypotheses[h], Pose2(*map_.poses[nearest[h]].tolist())
+            observation = place.inverse().compose(Pose2(*row[:3].tolist()))
+            found = verification.match(map_, int(nearest[h]), observation)
             if found is None:
                 continue
             row[ODDS] = min(row[ODDS] + units * float(np.interp(found.apart_m, APART_M, APART_NATS)), row[CEILING])
@@ -322,6 +319,19 @@ def _near(
             if ring[h] >= 0:
                 break
     return ring, pairs[:found]
+
+
+@njit(cache=True, nogil=True)
+def _beside(rows: Floats, poses: Floats, submaps: Ints32, reach_m: float) -> Ints:
+    """For each hypothesis the nearest experience of its submap within reach, -1 for none."""
+    nearest = np.full(len(rows), -1, np.int64)
+    for h in range(len(rows)):
+        least = reach_m * reach_m
+        for i in range(len(poses)):
+            dx, dy = poses[i, 0] - rows[h, X], poses[i, 1] - rows[h, Y]
+            if submaps[i] == rows[h, SUBMAP] and dx * dx + dy * dy < least:
+                least, nearest[h] = dx * dx + dy * dy, i
+    return nearest
 
 
 @njit(cache=True, nogil=True)

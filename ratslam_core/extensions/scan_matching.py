@@ -4,8 +4,8 @@ A view is much the same a metre farther on or aside, the more so the larger the 
 in its zone the robot is. Walls say it to a decimetre: the echoes of the last metres, moved along by odometry, are laid over
 those that were heard where the experience was made and around it, near where the observation puts the robot. What little walls
 say of a direction, as along a bare corridor, the observation decides. Where the echoes agree nowhere near, it is not that place
-(`parts.GeometricVerification`). Where none can be compared, as in the middle of a hall, an observation is worth little: there
-views are alike for metres. test_scan_matching.py::{test_echoes_say_where_in_a_room_the_robot_is,
+(`parts.GeometricVerification`). In the middle of a hall, where few are heard, an observation is worth little: there views are
+alike for metres. test_scan_matching.py::{test_echoes_say_where_in_a_room_the_robot_is,
 test_along_a_corridor_the_observation_decides, test_another_room_is_not_confirmed, test_an_observation_in_a_hall_is_worth_little}.
 """
 
@@ -98,7 +98,7 @@ class ScanMatching:
         """The robot in the frame of an experience, and give or take what (m); None: echoes say that this is not there."""
         found = self.match(map_, experience, observation)
         if found is None:
-            return observation, UNHEARD_M if self._count > self._begun else math.inf
+            return observation, UNHEARD_M if self._in_a_hall(map_, experience) else math.inf
         return None if found.apart_m > AGREES_M else (found.pose, found.sigma_m)
 
     def match(self, map_: Map, experience: int, observation: Pose2) -> Matched | None:
@@ -135,11 +135,16 @@ class ScanMatching:
         at = np.array([self._at.x, self._at.y, self._at.heading_rad])
         return _echoes(self._from[recent], self._recent[recent], at, self._angles)
 
-    def _around(self, map_: Map, experience: int) -> Floats:
-        """Echoes of an experience and those made just before and after it, in its frame; none that was also heard on the
-        way here, since that would agree with odometry whatever errors it has."""
+    def _in_a_hall(self, map_: Map, experience: int) -> bool:
+        """Whether it has listened, and few echoes were heard on the way here, or there."""
+        there = self._around(map_, experience, again=True)
+        return self._count > self._begun and min(len(self._on_the_way()), len(there)) < LEAST_POINTS
+
+    def _around(self, map_: Map, experience: int, *, again: bool = False) -> Floats:
+        """Echoes of an experience and those made just before and after it, in its frame; unless asked for again, none that
+        was also heard on the way here, since that would agree with odometry whatever errors it has."""
         beside = slice(max(0, experience - BESIDE), min(len(map_), experience + BESIDE + 1))
-        own = (map_.submap_of[beside] == map_.submap_of[experience]) & self.before(len(map_))[beside]
+        own = (map_.submap_of[beside] == map_.submap_of[experience]) & (self.before(len(map_))[beside] | again)
         poses, scans = map_.poses[beside][own], self._scans[beside][own].astype(np.float64)
         return _echoes(poses, scans, map_.poses[experience].copy(), self._angles)
 

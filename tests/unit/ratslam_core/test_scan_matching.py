@@ -125,7 +125,7 @@ def test_no_echo_is_laid_over_itself() -> None:
     """It would lie where odometry has it, whatever errors that has."""
     visit = Visit(ROOM, stays=True)
     observation = Pose2(0.6, 0.1, 0.0)
-    assert visit.told(observation) == (observation, UNHEARD_M)
+    assert visit.told(observation) == (observation, math.inf)
 
 
 def test_the_way_counts_not_the_time() -> None:
