@@ -70,7 +70,7 @@ class Brain:
             self.map_grid = MapGrid(sonar_angles_rad)
         matches = p.experience_map.scan_matching and len(sonar_angles_rad) > 0
         self.scans = ScanMatching(sonar_angles_rad) if matches else None
-        self.closures = EchoClosures()
+        self.echo_closures = EchoClosures()
         self.memories = Memories(self.goal_memory, self.occupancy, self.map_grid, p.occupancy)
         self.beats = Beats()
         self.relocalisations: int = 0  # how often the winning packet has jumped

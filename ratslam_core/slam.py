@@ -66,7 +66,7 @@ class RatSlam(Brain):
         )  # fmt: skip
         if created and self.scans is not None:
             self.scans.made(map_.here)
-            self.closures.made(map_, self.scans)
+            self.echo_closures.made(map_, self.scans)
         self._settle(seen, created, tick)
         map_.ground.note(map_, seen, created, tick.moved, self.carried, tick.beats)
         watch("experience")

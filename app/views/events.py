@@ -120,7 +120,7 @@ NEW_GROUND, LONG_AGO_S = 20, 30.0  # after so many new experiences, one that was
 DIVERGED_EVERY_S = 60.0  # a map that diverges again and again is marked no more often
 
 
-@kind("event_watch/7")
+@kind("event_watch/8")
 class EventWatch:
     """Call `watch` after each tick."""
 
@@ -130,6 +130,7 @@ class EventWatch:
         self._session, self._log = session, log
         self.reasons, self.closures = Reasons(session, log.why), Closures(session, log)
         self._here = session.brain.experience_map.here
+        self._tied = session.brain.echo_closures.count  # how often echoes have tied experiences
         self._new = 0  # experiences since the robot was last at one that it made long before
         self.last_snap: Snap | None = None
         self.lost = False
@@ -179,22 +180,30 @@ class EventWatch:
         self._before = packet
 
     def _watch_closures(self) -> None:
-        """Marks that the robot comes back from new ground to an experience that it made long before.
+        """Marks that the robot comes back from new ground to an experience that it made long before, or beside it.
 
         Who does not look recognises nothing: where it believes to be back by odometry alone, no loop is closed.
         """
         session, map_, before = self._session, self._session.brain.experience_map, self._here
-        self._here = now = map_.here
+        echoes, tied = session.brain.echo_closures, self._tied
+        self._here, self._tied = map_.here, echoes.count
         self._new += session.estimate.created
-        if session.estimate.created or now == before or not session.brain.params.local_view.enabled:
-            return
-        if session.time_s - session.evaluation.births(len(map_))[now, 3] < LONG_AGO_S:
+        if echoes.count > tied:
+            old, new = echoes.last
+            self._watch_closure(new, old, "beside", by_echoes=True)
+        elif not session.estimate.created and self._here != before and session.brain.params.local_view.enabled:
+            self._watch_closure(before, self._here, "back at", by_echoes=False)
+
+    def _watch_closure(self, start: int, end: int, words: str, *, by_echoes: bool) -> None:
+        session, map_ = self._session, self._session.brain.experience_map
+        if session.time_s - session.evaluation.births(len(map_))[end, 3] < LONG_AGO_S:
             return
         new, self._new = self._new, 0
-        if new >= NEW_GROUND and (before, now) in map_.transitions.row_of and not session.brain.lost:
-            event = self._log.note("closure", f"back at experience {now} after {new} new ones")
-            self.reasons.closure(event, before, now, new)
-            self.closures.closed(event, before, now)
+        linked = by_echoes or (start, end) in map_.transitions.row_of
+        if new >= NEW_GROUND and linked and not session.brain.lost:
+            event = self._log.note("closure", f"{words} experience {end} after {new} new ones")
+            self.reasons.closure(event, start, end, new, by_echoes=by_echoes)
+            self.closures.closed(event, start, end)
 
     def _watch_packets(self) -> None:
         session, carried = self._session, self._session.brain.carried

@@ -74,18 +74,20 @@ class Reasons:
         views = [(c.view, f"{c.share:.0%} of what was injected") for c in causes[:MOST_VIEWS]]
         self._keep(event, chain, views, self.causes.since_s, tuple(c.view for c in causes))
 
-    def closure(self, event: m.Event, start: int, end: int, new: int) -> None:
-        """After `new` new experiences, one that existed before them is active again and linked."""
+    def closure(self, event: m.Event, start: int, end: int, new: int, *, by_echoes: bool) -> None:
+        """After `new` new experiences, one that existed before them is linked: it is active again, or echoes told."""
         seen, map_ = self._session.estimate.recognition, self._session.brain.experience_map
         known = "its view is recognised" if seen.view < 0 else f"view {seen.view} is recognised ({self._differs()})"
+        if by_echoes:
+            known = "walls sound twice, some way apart, as they did there, from whichever side it comes"
         chain = [
             (event.time_s, f"{new} new experiences on new ground"),
-            (event.time_s, f"{known}, of experience {end}"),
+            (event.time_s, f"{known}: experience {end}" if by_echoes else f"{known}, of experience {end}"),
             (event.time_s, f"experiences {start} and {end} are linked: the loop is closed"),
             (event.time_s, f"the pose estimate moves by {_apart(self._robot_before, self._robot):.2f} m"),
             (event.time_s, f"{map_.link_count} links relax the map"),
         ]
-        views = [(seen.view, "recognised")] if seen.view >= 0 else []
+        views = [(seen.view, "recognised")] if seen.view >= 0 and not by_echoes else []
         self._keep(event, chain, views, event.time_s, tuple(view for view, _ in views), (start, end))
 
     def false_look(self, event: m.Event) -> None:

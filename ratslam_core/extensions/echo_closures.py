@@ -54,6 +54,8 @@ class EchoClosures:
             None  # what that match made of the robot's pose: from where the map has it to where it is
         )
         self._at = 0  # how many scans had been kept then
+        self.count = 0  # of ties so far
+        self.last = -1, -1  # the two experiences of the last one, the old one first
 
     def made(self, map_: Map, scans: ScanMatching) -> None:
         """An experience was just made where the robot is: tie it to an old one, if echoes say twice that this is beside it."""
@@ -71,7 +73,7 @@ class EchoClosures:
         if self._again(robot, there, scans.count):
             new = map_.pose(map_.here)
             map_.tie(old, map_.here, found.pose.compose(robot.inverse().compose(new)), found.sigma_m, way=True)
-            self._moved = None
+            self._moved, self.count, self.last = None, self.count + 1, (old, map_.here)
 
     def _again(self, robot: Pose2, there: Pose2, count: int) -> bool:
         """Whether an earlier match, some way back, has said the same; if none has, this one is remembered."""

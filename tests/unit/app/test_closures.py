@@ -35,3 +35,21 @@ def test_a_closure_has_the_map_before_it_and_as_its_correction_left_it() -> None
     assert history.log.until(first.time_s - 0.1, session).closures == ()
     assert history.log.until(first.time_s, session).closures == (first,)
     assert not any(array.flags.writeable for array in (first.before_xy, first.after_xy, first.links))
+
+
+def test_a_loop_that_echoes_close_is_told_as_such() -> None:
+    """No view is said to have been recognised, and the new experience is linked to the old one."""
+    session = Session(load_world("office"), 1)
+    history, echoes = History(session), session.brain.echo_closures
+    tied = set[tuple[int, int]]()
+    while not any(event.kind == "closure" and event.text.startswith("beside") for event in history.log.events):
+        session.tick()
+        history.watch()
+        tied |= {echoes.last} if echoes.count else set()
+        assert session.time_s < 300
+    event = history.log.events[-1]
+    why, closure = history.log.why[event.number], history.log.closures[-1]
+    assert (closure.end, closure.start) in tied
+    assert why.experiences == (closure.start, closure.end)
+    assert not why.views
+    assert any("walls sound" in words and f"experience {closure.end}" in words for _, words in why.chain)
