@@ -11,10 +11,12 @@ from typing import Any
 import numpy as np
 
 from ratslam_core.beats import EARLY, Beats
+from ratslam_core.extensions.echo_closures import EchoClosures
 from ratslam_core.extensions.kidnap_detector import MOST_USUAL, KidnapDetector
+from ratslam_core.extensions.scan_matching import RECENT, ScanMatching
 from ratslam_core.goal_memory import FREE, GoalMemory, _Iteration, misplaced
 from ratslam_core.laws.experience_map import LARGEST, experience_map, learnt, local_view, view_links
-from ratslam_core.laws.measures import FAR_M, MOST, array, number, same_kind, true, whole, within
+from ratslam_core.laws.measures import FAR_M, MOST, array, number, pose, same_kind, true, whole, within
 from ratslam_core.local_view.recogniser import LocalView
 from ratslam_core.occupancy_grid import BOUND, KEPT, MapGrid
 from ratslam_core.params import RatSlamParams
@@ -53,6 +55,9 @@ def check(brain: RatSlam) -> None:
     if brain.occupancy is not None and brain.map_grid is not None:
         within("log odds", array("log odds", brain.occupancy._log_odds, np.float32, shape[1:]), -BOUND, BOUND)
         _map_grid(brain.map_grid, len(brain.experience_map), len(sonars))
+    if brain.scans is not None:
+        _scan_matching(brain.scans, len(brain.experience_map), len(sonars))
+    _echo_closures(brain.echo_closures, len(brain.experience_map))
     if isinstance(brain.kidnap_detector, KidnapDetector):
         _kidnap_detector(brain.kidnap_detector, len(brain.experience_map), len(sonars))
     whole("relocalisations", brain.relocalisations)
@@ -219,6 +224,31 @@ def _map_grid(grid: MapGrid, experiences: int, sonars: int) -> None:
     real = scans[:known][np.arange(KEPT) < count[:known, None]]
     within("where a scan was made", real[:, :3], -FAR_M, FAR_M)
     within("a range", real[:, 3:], 0.0, math.inf)
+
+
+def _scan_matching(scans: ScanMatching, experiences: int, sonars: int) -> None:
+    within("a sonar's angle", array("sonar angles", scans._angles, np.float64, (sonars,)), -100.0, 100.0)
+    since = array("the counts at which experiences were made", scans._since, np.int64, (None,))
+    true(len(since) >= experiences, f"there must be a count for each of {experiences} experiences, got {len(since)}")
+    kept = whole("scans of the way here", scans._count)
+    within("the count at which an experience was made", since, 0, kept)
+    whole("the first scan since it was carried", scans._begun, 0, kept)
+    within("a range", array("scans of experiences", scans._scans, np.float32, (len(since), sonars)), 0.0, math.inf)
+    within("a range", array("scans of the way here", scans._recent, np.float64, (RECENT, sonars)), 0.0, math.inf)
+    within("where a scan was made", array("places of scans", scans._from, np.float64, (RECENT, 3)), -FAR_M, FAR_M)
+    pose("where odometry has led", scans._at)
+    if scans._scan is not None:
+        within("the newest scan", array("the newest scan", scans._scan, np.float64, (sonars,)), 0.0, math.inf)
+
+
+def _echo_closures(closures: EchoClosures, experiences: int) -> None:
+    whole("ties by echoes", closures.count)
+    whole("scans kept at a match", closures._at)
+    if closures._moved is not None:
+        pose("what a match said", closures._moved)
+    true(isinstance(closures.last, tuple) and len(closures.last) == 2, "a tie has two ends")
+    for end in closures.last:
+        whole("the end of a tie", end, -1, max(experiences - 1, -1))
 
 
 def _kidnap_detector(detector: KidnapDetector, experiences: int, sonars: int) -> None:

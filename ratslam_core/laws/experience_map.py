@@ -69,6 +69,7 @@ def _evidence(evidence: Evidence, n: int, submaps: int) -> None:
     true(not np.isnan(rows[:, CEILING]).any(), "a hypothesis must have a ceiling")
     within("a hypothesis' submap", rows[: evidence._count, SUBMAP], 0, submaps)
     number("the way since the last observation", evidence._units, 0.0, 1.0)
+    number("the way since echoes were asked", evidence._unheard, 0.0, LARGEST)
     number("the way since a doubt", evidence._quiet, 0.0, LARGEST)
     number("log odds of here", evidence.here, -FAR_M, FAR_M)
     for name in ("sure", "in_doubt"):
