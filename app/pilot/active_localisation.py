@@ -29,29 +29,30 @@ def active_aim(experiences: ExperienceMap, p: PilotParams) -> tuple[float, float
     row = rows[np.argmax(rows[:, ODDS])]
     if row[ODDS] < PRIOR:  # more has spoken against it than for it
         return None
-    ways = experiences.submap_of[: experiences.evidence.known] == row[SUBMAP]
-    return along(Pose2(float(row[X]), float(row[Y]), float(row[HEADING])), experiences.poses[: len(ways)], ways, p)
+    ways = np.flatnonzero(experiences.submap_of[: experiences.evidence.known] == row[SUBMAP])
+    robot, poses = Pose2(float(row[X]), float(row[Y]), float(row[HEADING])), experiences.poses
+    return next_on(soonest(robot, poses, ways, p), robot, poses, ways)
 
 
-def along(robot: Pose2, poses: NDArray[np.float64], ways: NDArray[np.bool_], p: PilotParams) -> tuple[float, float]:
-    """The next point, metres in the robot's frame, along the old way that is reached and faced soonest.
+def soonest(robot: Pose2, poses: NDArray[np.float64], ways: NDArray[np.int64], p: PilotParams) -> int:
+    """Of these experiences (k,), one at least, the place in the list of the one that is reached and faced soonest."""
+    x, y, heading = poses[ways].T
+    turn = np.abs(wrap_angles(heading - robot.heading_rad))
+    return int(np.argmin(np.hypot(x - robot.x, y - robot.y) / p.cruise_speed + turn / p.turn_rate))
 
-    poses: (n, 3), one after the other as they were driven; ways: (n,), those that count, one at least.
+
+def next_on(at: int, robot: Pose2, poses: NDArray[np.float64], ways: NDArray[np.int64]) -> tuple[float, float]:
+    """The next point, metres in the robot's frame, along the old way, `AHEAD_M` away or where it ends.
+
+    poses: (n, 3), one after the other as they were driven; ways: (k,), ascending, those that count; at: where in that list it is.
     """
-    away = np.hypot(poses[:, 0] - robot.x, poses[:, 1] - robot.y)
-    turn = np.abs(wrap_angles(poses[:, 2] - robot.heading_rad))
-    nearest = int(np.argmin(np.where(ways, away / p.cruise_speed + turn / p.turn_rate, np.inf)))
-    ahead = _ahead(nearest, poses, ways, away)
-    point = Pose2(*poses[ahead].tolist()).compose(Pose2(max(0.0, AHEAD_M - float(away[ahead])), 0.0, 0.0))
-    here = robot.inverse().compose(point)
-    return here.x, here.y
-
-
-def _ahead(experience: int, poses: NDArray[np.float64], ways: NDArray[np.bool_], away: NDArray[np.float64]) -> int:
-    """The experience that was made after this one as the robot drove on, where that is `AHEAD_M` away or the way ends."""
-    while away[experience] < AHEAD_M and experience + 1 < len(ways) and ways[experience + 1]:
-        step = poses[experience + 1, :2] - poses[experience, :2]
+    while (away := math.hypot(poses[ways[at], 0] - robot.x, poses[ways[at], 1] - robot.y)) < AHEAD_M:
+        if at + 1 == len(ways) or ways[at + 1] != ways[at] + 1:
+            break
+        step = poses[ways[at + 1], :2] - poses[ways[at], :2]
         if math.hypot(*step.tolist()) > AHEAD_M:
             break
-        experience += 1
-    return experience
+        at += 1
+    point = Pose2(*poses[ways[at]].tolist()).compose(Pose2(max(0.0, AHEAD_M - away), 0.0, 0.0))
+    here = robot.inverse().compose(point)
+    return here.x, here.y

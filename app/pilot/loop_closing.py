@@ -15,7 +15,7 @@ from bisect import bisect
 import numpy as np
 from numpy.typing import NDArray
 
-from app.pilot.active_localisation import along
+from app.pilot.active_localisation import next_on, soonest
 from app.pilot.known_ground import OPENING_GAP_M, placed
 from app.pilot.params import PilotParams
 from disk import kind
@@ -25,6 +25,7 @@ FAR_M = 2.8  # so near to a way, its direction counts more than its place
 LOOP_M = 30.0  # known ground at least this far by the links closes a loop, if it is near: `loop_share` of that way ...
 LOOP_MOST_M = 150.0  # ... of which no more counts than this
 LOOP_S = 40.0  # it is driven along for so long, so that it is recognised
+ASK_S = 1.0  # it is looked so often whether links lead there by now
 LOOP_AGAIN_S = 300.0  # from the same place it is tried again after this time
 MIDDLE_M, MIDDLE_AHEAD_M = 0.5, 1.5  # it keeps to the middle, steering aside by at most this, at a point so far ahead
 
@@ -32,7 +33,7 @@ _Array = NDArray[np.float64]
 _Point = tuple[float, float]
 
 
-@kind("loop closer/2")
+@kind("loop closer/3")
 class LoopCloser:
     """Chooses a loop to close, and drives until it is closed."""
 
@@ -41,6 +42,8 @@ class LoopCloser:
         self._angles = np.array(sonar_angles_rad, np.float64)
         self._goal = -1  # what it heads for first: the loop is closed when links lead there
         self._left_s = 0.0  # of driving along old ground
+        self._times = np.zeros(0)  # s, to each experience by the links, ...
+        self._ask_s = 0.0  # ... for so long still
         self._tried: list[tuple[int, float, float]] = []  # where it set out: m, in the frame of an experience
         self._tried_s: list[float] = []  # and when
 
@@ -51,18 +54,18 @@ class LoopCloser:
         poses, robot = experiences.poses, experiences.robot
         if self._tried_near(robot, experiences, now_s):
             return None
-        near, away, turn = _near_but_far(poses, robot, times, p)
-        near = near[np.argsort(away[near] / p.cruise_speed + turn[near] / p.turn_rate, kind="stable")]
-        bearing = wrap_angles(np.arctan2(poses[near, 1] - robot.y, poses[near, 0] - robot.x) - robot.heading_rad)
+        near = _near_but_far(poses, robot, times, p)
+        dx, dy = poses[near, 0] - robot.x, poses[near, 1] - robot.y
+        bearing = wrap_angles(np.arctan2(dy, dx) - robot.heading_rad)
         beams = np.argmin(np.abs(self._angles - bearing[:, None]), axis=1)
-        seen = ranges_m[beams] >= np.minimum(away[near], FAR_M + OPENING_GAP_M)
+        seen = ranges_m[beams] >= np.minimum(np.hypot(dx, dy), FAR_M + OPENING_GAP_M)
         ahead = near[seen & (np.abs(bearing) <= abs(self._angles[0]))]
         if not len(ahead):
             return None
         here = experiences.pose(experiences.active).inverse().compose(robot)
         self._tried.append((experiences.active, here.x, here.y))
         self._tried_s.append(now_s)
-        self._goal, self._left_s = int(ahead[0]), LOOP_S
+        self._goal, self._left_s, self._ask_s = int(ahead[soonest(robot, poses, ahead, p)]), LOOP_S, 0.0
         return self._goal
 
     def _tried_near(self, robot: Pose2, experiences: ExperienceMap, now_s: float) -> bool:
@@ -76,29 +79,31 @@ class LoopCloser:
         """The next point to head for, m, robot's frame; None when the loop is closed, or was not for too long."""
         self._left_s -= dt
         poses, robot = experiences.poses, experiences.robot
-        times = experiences.temporal_map.times_to(experiences.active)
-        near, away, turn = _near_but_far(poses, robot, times, p)
-        if self._left_s <= 0.0 or not len(near) or times[self._goal] * p.cruise_speed < LOOP_M:
+        near = _near_but_far(poses, robot, self._asked(experiences, dt), p)
+        if self._left_s <= 0.0 or not len(near) or self._times[self._goal] * p.cruise_speed < LOOP_M:
             return None
-        nearest = int(near[np.argmin(away[near] / p.cruise_speed + turn[near] / p.turn_rate)])
-        if away[nearest] < FAR_M:
-            way = experiences.pose(nearest)
-            here = way.inverse().compose(robot)
+        at = soonest(robot, poses, near, p)
+        way = experiences.pose(int(near[at]))
+        here = way.inverse().compose(robot)
+        if math.hypot(here.x, here.y) < FAR_M:
             robot = way.compose(Pose2(here.x, max(-MIDDLE_M, min(MIDDLE_M, here.y)), here.heading_rad))
-        ways = np.zeros(len(poses), np.bool_)
-        ways[near] = True
-        return along(robot, poses, ways, p)
+        return next_on(at, robot, poses, near)
+
+    def _asked(self, experiences: ExperienceMap, dt: float) -> _Array:
+        """Seconds to each experience by the links, as they were a moment ago."""
+        self._ask_s -= dt
+        if self._ask_s <= 0.0 or len(self._times) > len(experiences):
+            self._times, self._ask_s = experiences.temporal_map.times_to(experiences.active), ASK_S
+        return self._times
 
 
-def _near_but_far(
-    poses: _Array, robot: Pose2, times: _Array, p: PilotParams
-) -> tuple[NDArray[np.int64], _Array, _Array]:
-    """Experiences (k,) that lie near on the map, but far by the links; of all (n,), how far away, m, and how far to turn, rad."""
-    away, way = np.hypot(poses[:, 0] - robot.x, poses[:, 1] - robot.y), times * p.cruise_speed
+def _near_but_far(poses: _Array, robot: Pose2, times: _Array, p: PilotParams) -> NDArray[np.int64]:
+    """Experiences (k,) that lie near on the map, but far by the links. times: s, of the first so many."""
+    way = times * p.cruise_speed
+    away = np.hypot(poses[: len(way), 0] - robot.x, poses[: len(way), 1] - robot.y)
     # Where no links lead, as on another submap, the map does not say what is near.
     far = np.isfinite(way) & (way > LOOP_M)
-    near = np.flatnonzero((away < p.loop_share * np.minimum(way, LOOP_MOST_M)) & far)
-    return near.astype(np.int64), away, np.abs(wrap_angles(poses[:, 2] - robot.heading_rad))
+    return np.flatnonzero((away < p.loop_share * np.minimum(way, LOOP_MOST_M)) & far).astype(np.int64)
 
 
 def in_the_middle(aim: _Point, ranges_m: NDArray[np.float32]) -> _Point:
