@@ -19,6 +19,7 @@ import numpy as np
 from numba import njit
 
 from disk import kind
+from ratslam_core.occupancy_grid import FARTHEST_M
 from ratslam_core.parts import Matched
 from ratslam_core.pose_graph.transitions import moved_by
 from ratslam_core.types import IDENTITY, Flags, Floats, Ints32, Odometry, Pose2, Singles, grown, wrap_angle
@@ -27,13 +28,12 @@ RECENT = 60  # scans of the way here that are kept ...
 STEP_M, STEP_RAD = 0.1, 0.3  # ... one for each way, or turn, of so much
 BESIDE = 12  # experiences made before and after, with which a place is heard
 AROUND_M = 2.5  # scans from farther away tell nothing of a place
-FARTHEST_M = 3.9  # farther echoes count as none
 LEAST_POINTS = 20  # with fewer echoes nothing can be said
 SEARCH_M, SEARCH = 0.2, 5  # the observation may be off by so many steps to each side
 FINER_M = (0.1, 0.05)  # and then more exactly
 FINER_RAD = 0.5  # rad/m: turns are tried in steps of this times those
 MOST_FINER = 3  # steps of each
-CELL_M, ACROSS = 0.1, 144  # a picture of how far it is to the nearest old echo
+CELL_M, ACROSS = 0.1, 152  # a picture of how far it is to the nearest old echo
 NEAR = 4  # cells; an echo farther than this from any old one counts as this far
 OFF_COST, TURN_COST = 0.12, 0.2  # m per m², and per rad², off the observation
 ASIDE_M, DIRECTIONS = 0.4, 16  # a pose so far aside fits worse, in whichever direction ...
