@@ -176,7 +176,7 @@ def _rules(name: str, first: str, second: str, title: str, about: str) -> Pair:
 
 
 def _vision(config: Config) -> Pair:
-    off = "without vision", "Without vision", "Path integration alone: soon lost."
+    off = "without vision", "Without vision", "It knows no view, so its pose cells are soon lost."
     on = "with vision", "With vision", "It recognises what it has seen before."
     (first, *_), (second, title, about) = (on, off) if config.local_view.enabled else (off, on)
     return Pair("vision", first, second, title, about, {"local_view.enabled": not config.local_view.enabled})
