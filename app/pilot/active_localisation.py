@@ -30,6 +30,8 @@ def active_aim(experiences: ExperienceMap, p: PilotParams) -> tuple[float, float
     if row[ODDS] < PRIOR:  # more has spoken against it than for it
         return None
     ways = np.flatnonzero(experiences.submap_of[: experiences.evidence.known] == row[SUBMAP])
+    if not len(ways):  # carried again before it had mapped anything: the submap that it was on is empty
+        return None
     robot, poses = Pose2(float(row[X]), float(row[Y]), float(row[HEADING])), experiences.poses
     return next_on(soonest(robot, poses, ways, p), robot, poses, ways)
 

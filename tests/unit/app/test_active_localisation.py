@@ -10,7 +10,7 @@ import pytest
 from app.pilot.active_localisation import active_aim
 from app.pilot.params import PilotParams
 from ratslam_core import Pose2
-from ratslam_core.extensions.evidence import PRIOR
+from ratslam_core.extensions.evidence import PRIOR, SUBMAP
 
 from .worlds import HandMadeMap
 
@@ -62,6 +62,15 @@ def test_of_two_ways_it_takes_the_one_that_it_faces() -> None:
     crossing = a_map((0.0, 0.0, 0.0), (3.0, -3.0, math.pi / 2))
     assert abs(drive(crossing, 2.8, 0.3, 0.1, 2.0).heading_rad) < 0.3
     assert abs(drive(crossing, 2.8, 0.3, math.pi / 2 - 0.1, 2.0).heading_rad - math.pi / 2) < 0.3
+
+
+def test_on_a_submap_where_nothing_was_mapped_is_no_way() -> None:
+    """It was carried twice, the second time at once: the place between the two lies on a submap without an experience."""
+    map_ = a_map((0.0, 0.0, 0.0))
+    suppose(map_, (1.0, 0.0, 0.0, 0.0))
+    assert aim(map_) is not None
+    map_.evidence.hypotheses[:, SUBMAP] = 1
+    assert aim(map_) is None
 
 
 def test_what_was_made_next_but_elsewhere_is_not_where_the_way_goes_on() -> None:
