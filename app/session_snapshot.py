@@ -28,6 +28,7 @@ from app.pilot.bars import Bar, Bars
 from app.pilot.behaviours import Behaviour
 from app.pilot.explore import Explorer, Turn
 from app.pilot.known_ground import LOOKS, KnownGround
+from app.pilot.loop_closing import ASK_S
 from app.pilot.opening import Opening
 from app.pilot.route_following import RouteFollower
 from app.pilot.seeking import Seeker
@@ -278,10 +279,14 @@ def _seeker(seeker: Seeker, experiences: int) -> None:
     within("openings", openings, -FAR_M, FAR_M)
     for name, value in (("the trip", seeker._trip_s), ("the longest trip", seeker._trip_most_s)):
         number(name, value, 0.0, LONGEST_S)
+    closer = seeker._closer
+    times = array("times by the links", closer._times, np.float64, (np.size(closer._times),))
+    true(not np.isnan(times).any(), "times by the links must be numbers")
+    number("how long they are still taken for true", closer._ask_s, -LONGEST_S, ASK_S)
     leg = seeker._last_leg
-    true(leg is None or leg is seeker._closer or isinstance(leg, Opening), "the last leg of a trip must be one")
-    if leg is seeker._closer:
-        whole("where a loop is to be closed", seeker._closer._goal, 0, experiences - 1)
+    true(leg is None or leg is closer or isinstance(leg, Opening), "the last leg of a trip must be one")
+    if leg is closer:
+        whole("where a loop is to be closed", closer._goal, 0, min(experiences, len(times)) - 1)
     if isinstance(leg, Opening):
         whole("from where an opening was seen", leg.experience, 0, experiences - 1)
         pose("an opening", leg.place)

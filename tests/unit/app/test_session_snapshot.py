@@ -214,6 +214,8 @@ BREAKS: list[tuple[str, object, str]] = [
     ("pilot._local._echoes", np.zeros((3, 2)), "echoes must have shape"),
     ("pilot._freeing._stay._heading", float("inf"), "the pilot's stay must be a number from"),
     ("pilot.mode", "asleep", "the mode must be one of explore, manual, goal, got 'asleep'"),
+    ("pilot._seeker._closer._times", np.array([np.nan]), "times by the links must be numbers"),
+    ("pilot._seeker._closer._ask_s", 9.0, "how long they are still taken for true must be a number from"),
     ("pilot._explorer._rng", np.random.default_rng(3), "must draw from one generator"),
     ("evaluation._count", 10**6, "the path's length must be a whole number"),
     ("evaluation._experience", np.full(4096, 77), "active experiences must be from 0 to"),
@@ -231,6 +233,17 @@ def test_a_session_that_breaks_a_law_is_refused_by_it(subtests: pytest.Subtests)
         change(session, path, value)
         with subtests.test(words), pytest.raises(ValueError, match=words):
             restore_session(take_session(session))
+
+
+def test_a_loop_is_closed_where_times_are_known() -> None:
+    """Else the robot would look up how far it is to an experience beyond the end of the list."""
+    session = driven("living", 20)
+    seeker = session.pilot._seeker
+    seeker._last_leg, seeker._closer._goal, seeker._closer._times = seeker._closer, 1, np.ones(2)
+    restore_session(take_session(session))
+    seeker._closer._times = np.ones(1)
+    with pytest.raises(ValueError, match="where a loop is to be closed must be a whole number from 0 to 0, got 1"):
+        restore_session(take_session(session))
 
 
 def test_a_world_that_is_none_is_refused() -> None:
