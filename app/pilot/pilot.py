@@ -175,7 +175,7 @@ class Pilot:
         follower = self._follower if to_goal else self._seeker.follower
         if follower is not None:
             follower.move(odometry, self.behaviour is not Behaviour.FREEING_ITSELF)
-        drive = self._freeing.step(bumped, odometry, self._asked[1], self.params)
+        drive = self._freeing.step(bumped, odometry, self._asked[1], self._local, self.params)
         self._local.squeezes = self._freeing.squeezes
         if drive is not None:
             self.behaviour = Behaviour.FREEING_ITSELF
@@ -252,12 +252,13 @@ class Pilot:
 
 BUMPED_S = 1.0  # without progress for this long, a robot that has bumped into something frees itself
 SOMEWHERE_M, TURNED_RAD = 0.4, 1.5  # progress is to come this far, by odometry, or to turn this far ...
-MOST_TURNS = 2  # ... but turns count no more often than this in one place
+MOST_TURNS = 4  # ... but turns count no more often than this in one place: who looks back turns round once
 GRIP_YAW_RATE = 0.2  # rad/s; turns faster than this are used to measure how slow the floor is
 LEAST_GRIP = 0.2  # on the slowest floor, time without progress runs at this share
 GRIP_S = 2.0  # time constant of measuring the floor
 BACK_OFF_S, BACK_OFF_SPEED = 1.0, 0.2  # how long, and at how many m/s, the robot backs off ...
-FREE_TURN_S = 1.5  # ... and how long it turns then ...
+FREE_TURN_S, LEAST_TURN_S = 1.5, 0.5  # ... and how long it turns then, less if it is free to drive ahead ...
+FREE_M = 1.0  # ... so far ...
 FREE_TURN_SHARE = 0.5  # ... at this share of the turn rate or more, to the left or right
 SQUEEZE_S = 15.0  # who stays in one place for so long passes closer to what is around
 
@@ -292,15 +293,19 @@ class Freeing:
         """Whether it has been in one place for so long that it may pass closer to what is around it."""
         return self._stay.seconds > SQUEEZE_S
 
-    def step(self, bumped: bool, odometry: Odometry, asked: float, p: PilotParams) -> tuple[float, float] | None:
+    def step(
+        self, bumped: bool, odometry: Odometry, asked: float, local: LocalMovement, p: PilotParams
+    ) -> tuple[float, float] | None:
         """The drive while the robot frees itself, else None. asked: yaw rate (rad/s) of the last drive."""
         self.has_begun = False
         self._move_on(odometry, asked)
         if self._left_s > 0:
             self._left_s -= odometry.dt
-            self._still_s = 0.0
+            self._still_s, self._place[:2] = 0.0, 0.0
             if self._left_s < FREE_TURN_S:
                 self._drive = (0.0, self._drive[1])
+            if self._left_s < FREE_TURN_S - LEAST_TURN_S and local.free_way(0.0, p) >= FREE_M:
+                self._left_s = 0.0
             return self._drive
         if self._still_s > p.stuck_s or (bumped and self._still_s > BUMPED_S):
             self.begin(p)
@@ -329,6 +334,4 @@ class Freeing:
         share = float(self._rng.uniform(FREE_TURN_SHARE, 1.0))
         turn = share * math.copysign(p.turn_rate, self._rng.uniform(-1, 1))
         self._left_s, self._drive = FREE_TURN_S + BACK_OFF_S, (-BACK_OFF_SPEED, turn)
-        self._still_s = 0.0
-        self._place[:2] = 0.0
         self.has_begun = True
