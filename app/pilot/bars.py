@@ -2,7 +2,8 @@
 
 ACRA 2006 3.4 counts a failed trial against the links, and deletes them in the end. A door that is shut, a person, or a
 desk corner that the map has half a metre beside its place would so cut a way for good. A bar only makes it slower to
-take: it is about as wide as the robot, fades, and grows when the robot fails there again.
+take: it is about as wide as the robot, fades, and grows when the robot fails there again. Then it lasts twice
+as long, or a robot between two dead ends would try each again as soon as it has failed at the other.
 test_bars.py::{test_a_bar_delays_what_crosses_it_and_fades, test_failing_again_at_a_bar_makes_it_last_longer}.
 """
 
@@ -21,7 +22,7 @@ from ratslam_core import Pose2
 
 BAR_AHEAD_M = 0.4  # how far ahead of the robot a bar lies
 BAR_M, WIDEST_BAR_M = 0.6, 1.4  # its width; each time the robot fails there again, as much wider, up to this
-LONGEST_BAR_S = 90.0  # longest time in which a bar fades
+LONGEST_BAR_S = 3600.0  # longest time in which a bar fades: a door may have been opened since
 BAR_DELAY_S = 30.0  # of each way across a new bar, times how often the robot failed there
 
 _Array = NDArray[np.float64]
