@@ -48,7 +48,7 @@ class SimParams:
     fade_m: float = param(
         14.0, "what is this deep in the image is half as bright: 1 / (1 + depth / fade)", 0.5, 1000.0, "m", symbol="d_f")
     sonar_range_m: float = param(
-        5.0, "farthest echo; also what a sonar reports when there is none", 0.5, 20.0, "m", symbol="d_max")
+        5.0, "farthest echo; a sonar that hears none reports this, but no less than 5 m", 0.5, 20.0, "m", symbol="d_max")
     sonar_cone_rad: float = param(
         math.radians(15), "opening angle of a sonar's cone; the nearest echo within it counts", 0.0, 1.0, "rad",
         symbol="β")

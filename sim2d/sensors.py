@@ -213,6 +213,8 @@ def scene_number(
 # From left to right, as on the front of a Pioneer.
 SONAR_ANGLES_RAD: tuple[float, ...] = tuple(math.radians(a) for a in (90, 50, 30, 10, -10, -30, -50, -90))
 
+NO_ECHO_M = 5.0  # a sonar that hears nothing reports at least this, or a short one would have walls all around
+
 _Array = NDArray[np.float64]
 
 
@@ -230,8 +232,8 @@ def sonar_ranges(
     errors: _Array,
     touch: float,
 ) -> tuple[NDArray[np.float32], bool]:
-    """(n,): distance (m) from the robot's middle to the nearest echo on the rays of each cone; `farthest` if there
-    is none.
+    """(n,): distance (m) from the robot's middle to the nearest echo on the rays of each cone; NO_ECHO_M, or `farthest` if that
+    is more, if there is none.
 
     Also returns whether anything is nearer than `touch` metres to the middle, in any direction.
     elements: (m, 4) sides of actors, besides the walls of the index. errors: (n,) added to each echo (m).
@@ -244,8 +246,8 @@ def sonar_ranges(
             angle = heading + angles[i] + cone * (k / (rays - 1) - 0.5)
             shortest = _range(index, near, x, y, angle, shortest)
         if shortest < farthest:
-            shortest = min(max(shortest + errors[i], 0.0), farthest)
-        out[i] = shortest
+            shortest = max(shortest + errors[i], 0.0)
+        out[i] = shortest if shortest < farthest else max(farthest, NO_ECHO_M)
     return out, not is_clear(index, near, x, y, touch)
 
 

@@ -8,9 +8,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from ratslam_core.occupancy_grid import FARTHEST_M
 from sim2d import SONAR_ANGLES_RAD, Simulator, Start
 from sim2d.geometry.wall_index import build_index
-from sim2d.sensors import laser_ranges, sonar_ranges
+from sim2d.sensors import NO_ECHO_M, laser_ranges, sonar_ranges
 
 from .rooms import EXACT, FORWARD, STAY, room, run, wall
 
@@ -36,7 +37,9 @@ def test_echoes_are_as_far_as_walls_within_reach_and_errors() -> None:
     got, touches = sonar(SQUARE, angles, 2.5, 0.01)
     assert (got.dtype, touches) == (np.float32, False)
     assert got[[0, 7]] == pytest.approx([2.01, 2.01], abs=1e-6)
-    assert got[[3, 4]].tolist() == [2.5, 2.5]  # no echo within reach, no error either
+    assert got[[3, 4]].tolist() == [NO_ECHO_M, NO_ECHO_M]  # no echo within reach, no error either
+    assert sonar(SQUARE, angles, 7.5)[0].max() < NO_ECHO_M < sonar(NONE, angles, 7.5)[0].min()
+    assert NO_ECHO_M >= FARTHEST_M  # or who maps would take it for a wall
     assert sonar(SQUARE, angles, 5.0, -9.0)[0].tolist() == [0.0] * 8
 
 
