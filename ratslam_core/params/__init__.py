@@ -79,7 +79,8 @@ class LocalViewParams:
     false_positives: float = param(
         0.0, "share of the recognised views that are taken for another known one", 0.0, 1.0, symbol="N_vis",
         source="D 5.1")
-    enabled: bool = param(True, "vision; off = path integration only", source="A figures 9, 10")
+    enabled: bool = param(
+        True, "vision; off = path integration only, in our map with what the echoes tell", source="A figures 9, 10")
 
     def __post_init__(self) -> None:
         check_ranges(self)
