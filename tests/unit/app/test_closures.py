@@ -39,7 +39,7 @@ def test_a_closure_has_the_map_before_it_and_as_its_correction_left_it() -> None
 
 def test_a_loop_that_echoes_close_is_told_as_such() -> None:
     """No view is said to have been recognised, and the new experience is linked to the old one."""
-    session = Session(load_world("office"), 1)
+    session = Session(load_world("office"), 3)
     history, echoes = History(session), session.brain.echo_closures
     tied = set[tuple[int, int]]()
     while not any(event.kind == "closure" and event.text.startswith("beside") for event in history.log.events):
