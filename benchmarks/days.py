@@ -25,7 +25,7 @@ from app.session import Session
 from sim2d import load_world, world_names
 
 GOALS = 10  # of one round over the map
-FARTHEST_M = 100.0  # a way behind a door that is shut counts as so long
+SHUT_OUT_M = 100.0  # a way behind a door that is shut counts as so long
 NEAR_M = 1.0
 
 
@@ -103,8 +103,9 @@ def to_places_spread(course: Course, goals: int, until_s: float = math.inf) -> I
         place = session.evaluation.made_at(goal, session.brain.experience_map)
         if session.time_s >= until_s:
             return
-        shortest_m = min(session.simulator.free_space.shortest_m(course.here, place), FARTHEST_M)
-        yield from course.go(f"goal {k}", goal, place, shortest_m / 0.15 + 60, NEAR_M)
+        shortest_m = session.simulator.free_space.shortest_m(course.here, place)
+        way_m = shortest_m if math.isfinite(shortest_m) else SHUT_OUT_M
+        yield from course.go(f"goal {k}", goal, place, way_m / 0.15 + 60, NEAR_M)
 
 
 def tell(world: str, hours: list[Hour]) -> None:
