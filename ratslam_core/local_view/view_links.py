@@ -106,8 +106,7 @@ class ViewLinks:
         """
         cells, strength = self.of(view)
         values = np.minimum(strength, np.float32(self.params.saturation))
-        total = float(values.sum(dtype=np.float64))
-        if lost and total > 0:
+        if lost and (total := float(values.sum(dtype=np.float64))) > 0:
             values *= np.float32(LOST / total)
         return cells, values
 
@@ -133,11 +132,8 @@ class ViewLinks:
         """Copy the blocks without gaps into a new arena that has room for `wanted` more."""
         size = (int(self._blocks[:, 2].sum()) + wanted) * 4 // 3
         cells, strength = np.zeros(size, np.int32), np.zeros(size, np.float32)
-        start, used, room = self._blocks.T
-        moved, old = np.cumsum(room) - room, in_use(start, used)
-        new = in_use(moved, used)
-        cells[new], strength[new] = self._cells[old], self._strength[old]
-        self._cells, self._strength, self._blocks[:, 0], self._end = cells, strength, moved, int(room.sum())
+        self._end = _move(self._cells, self._strength, self._blocks, cells, strength)
+        self._cells, self._strength = cells, strength
 
 
 @kind("visual association/2")
@@ -226,6 +222,19 @@ def _count_active(linked: Ints32, slot: Ints32) -> int:
         if slot[linked[k]] > 0:
             count += 1
     return count
+
+
+@njit(cache=True, nogil=True)
+def _move(cells: Ints32, strength: Singles, blocks: Ints, to_cells: Ints32, to_strength: Singles) -> int:
+    """Copy each view's links, one block behind the other, to another arena. Returns where the last one ends."""
+    end = 0
+    for view in range(len(blocks)):
+        start, used, room = blocks[view, 0], blocks[view, 1], blocks[view, 2]
+        to_cells[end : end + used] = cells[start : start + used]
+        to_strength[end : end + used] = strength[start : start + used]
+        blocks[view, 0] = end
+        end += room
+    return end
 
 
 @njit(cache=True, nogil=True)
