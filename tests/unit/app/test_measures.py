@@ -90,14 +90,15 @@ def test_of_a_visit_the_way_taken_the_arbitration_and_the_routes_of_the_goal_mem
     a weight changes by a fifth."""
     scores, course = measured(
         ["chosen_off_m", "route_off_m"],
-        Tag(do="tag", places=["north-west corner", "north-east corner"]),
-        Drive(do="drive", path=[*LAPS, *LAPS, "north-east corner"]),
-        Visit(do="visit", places=["north-east corner", "north-west corner"], timeout_s=120),
+        Tag(do="tag", places=["north-east corner", "south-west corner"]),
+        Drive(do="drive", path=[*LAPS, *LAPS, *LAPS[:2]]),
+        Visit(do="visit", places=["north-east corner", "south-west corner"], timeout_s=120),
         seed=1,
     )
     path = course.session.evaluation.path[round(course.visits[-1].began_s * 10) :, 1]
     middle = sum(course.session.world.bounds[1::2]) / 2
     assert scores["lower_way"] == pytest.approx(np.mean(path < middle))
+    assert 0 < scores["lower_way"] < 1
     assert scores["chosen_off_m"] < scores["others_off_m"]
     assert scores["route_cells"] > 3
     assert scores["route_off_m"] < 0.5
