@@ -157,10 +157,10 @@ def evaluation(evaluation: Evaluation, experiences: int) -> None:
     """ValueError names the first law that does not hold. experiences: how many the map has."""
     true(isinstance(evaluation, Evaluation), f"its evaluation is a {type(evaluation).__name__}")
     same_kind("evaluation", evaluation, Evaluation())
-    rows = array("the path", evaluation._rows, np.float64, (None, 8))
+    rows = array("the path", evaluation._rows, np.float32, (None, 8))
     count = whole("the path's length", evaluation._count, 1, len(rows))
     within("the path", rows[:count], -MOST_TURNED, MOST_TURNED)
-    active = array("active experiences", evaluation._experience, np.int64, (len(rows),))
+    active = array("active experiences", evaluation._experience, np.int32, (len(rows),))
     within("active experiences", active[:count], 0, experiences - 1)
     made = array("where experiences were made", evaluation._made_at, np.float64, (None, 4))
     true(len(made) >= experiences, f"where {experiences} experiences were made must be known or not, got {len(made)}")

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +14,8 @@ from numpy.typing import NDArray
 from disk import kind
 from ratslam_core import ExperienceMap, Pose2
 from sim2d import FreeSpace
+
+Path = NDArray[np.floating[Any]]  # (ticks, 2), m
 
 
 def alignment(estimate: NDArray[np.float64], truth: NDArray[np.float64]) -> Pose2:
@@ -93,7 +96,7 @@ def _judged(experiences: ExperienceMap, births: Births, which: NDArray[np.bool_]
     return Judged(ends, np.hypot(across, up), t.believed[rows] >= BELIEVED * t.weight[rows])
 
 
-def loops_closed(ends: NDArray[np.int64], births: Births, path: NDArray[np.float64], islands: NDArray[np.float64],
+def loops_closed(ends: NDArray[np.int64], births: Births, path: Path, islands: NDArray[np.float64],
                  tick_s: float) -> int:  # fmt: skip
     """How many independent loops of the floor are closed by links between `ends`, (m, 2).
 
@@ -116,7 +119,7 @@ def loops_closed(ends: NDArray[np.int64], births: Births, path: NDArray[np.float
 ROUND_M, ROUND_S = 1.0, 30.0  # a way comes round where it has been this near, so long before
 
 
-def loops_gone_round(path: NDArray[np.float64], islands: NDArray[np.float64], tick_s: float) -> int:
+def loops_gone_round(path: Path, islands: NDArray[np.float64], tick_s: float) -> int:
     """How many independent loops of the floor the robot's way went round: what `loops_closed` would be if it had known
     every place again to which it came a second time. path: (ticks, 2); islands: (k, 2)."""
     if len(islands) == 0 or len(path) == 0:
@@ -154,11 +157,11 @@ class Coverage:
         """Go on, on this floor, after having been restored. On a floor of another size, begin anew."""
         self._floor = floor if self._covered.shape == tuple(floor.grid) else None
 
-    def follow(self, floor: FreeSpace, path: NDArray[np.float64]) -> float:
+    def follow(self, floor: FreeSpace, path: Path) -> float:
         """The share of this floor that a path, (n, 2) m, covers. Another floor or a shorter path begins anew."""
         if floor is not self._floor or len(path) < self._followed:
             self._floor, self._covered = floor, np.zeros(floor.grid, np.bool_)
             self._count = self._followed = 0
-        self._count += floor.cover(self._covered, path[self._followed :], NEAR_M)
+        self._count += floor.cover(self._covered, path[self._followed :].astype(np.float64), NEAR_M)
         self._followed = len(path)
         return self._count / max(1, floor.floor_cells)

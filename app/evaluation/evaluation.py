@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from app.evaluation.agreement import alignment, rmse, steady_alignment
+from app.evaluation.agreement import Path, alignment, rmse, steady_alignment
 from disk import kind
 from ratslam_core import CellsOnly, ExperienceMap, Odometry, Pose2, wrap_angles
 from ratslam_core.types import grown
@@ -29,15 +29,15 @@ LEAST_WAY_M = 0.5  # a path with a smaller spread (RMS distance from its middle)
 Points = NDArray[np.float64]  # (n, 2)
 
 
-@kind("evaluation/2")
+@kind("evaluation/3")
 class Evaluation:
     """Keeps, tick by tick, what is needed to compare the map with the truth."""
 
     def __init__(self, known: int = 0) -> None:
         """known: how many experiences the brain brought with it. Where those were truly made is unknown."""
-        # True x, y, heading; local pose x, y, heading; odometry alone x, y.
-        self._rows: NDArray[np.float64] = np.zeros((4096, 8))
-        self._experience = np.zeros(4096, np.int64)
+        # True x, y, heading; local pose x, y, heading; odometry alone x, y. It is what grows for ever: so float32.
+        self._rows: NDArray[np.float32] = np.zeros((4096, 8), np.float32)
+        self._experience = np.zeros(4096, np.int32)
         self._count = 0
         # True x, y, heading and the time at which each experience was made.
         self._made_at = np.full((max(1024, known), 4), np.nan)
@@ -93,7 +93,7 @@ class Evaluation:
         return np.concatenate([known, unknown])
 
     @property
-    def path(self) -> Points:
+    def path(self) -> Path:
         """Where the robot truly was in each tick, (n, 2). A view."""
         return self._rows[: self._count, :2]
 
@@ -133,7 +133,7 @@ class Evaluation:
         """True path, path through the map as it is now, and path by odometry alone; (n, 2) each, not aligned."""
         ticks = slice(0, self._count, every)
         true, mapped = self._estimates(ticks, experiences)
-        return true[:, :2], mapped[:, :2], self._rows[ticks, 6:8]
+        return true[:, :2], mapped[:, :2], self._rows[ticks, 6:8].astype(np.float64)
 
     def map_in_office(self, experiences: ExperienceMap, every: int = 1) -> Pose2:
         """The pose of the map's frame in the office: the very fit after which `errors` measures the map. While the path
@@ -149,7 +149,7 @@ class Evaluation:
         """Where the wheels alone put the robot, in the frame of where the record began."""
         return self._odometry
 
-    def odometry_path(self, ticks: int, every: int = 1) -> Points:
+    def odometry_path(self, ticks: int, every: int = 1) -> Path:
         """The places of `odometry` in the last so many ticks, thinned, (n, 2); the newest is the last."""
         last = self._rows[max(0, self._count - ticks) : self._count, 6:8]
         return last[::-1][::every][::-1]
@@ -166,7 +166,7 @@ class Evaluation:
 
     def _estimates(self, ticks: slice, experiences: ExperienceMap) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """True poses and estimates, in the map as it is now, of these ticks; (n, 3) each."""
-        row, pose = self._rows[ticks], experiences.poses[self._experience[ticks]]
+        row, pose = self._rows[ticks, :6].astype(np.float64), experiences.poses[self._experience[ticks]]
         c, s = np.cos(pose[:, 2]), np.sin(pose[:, 2])
         x, y = pose[:, 0] + c * row[:, 3] - s * row[:, 4], pose[:, 1] + s * row[:, 3] + c * row[:, 4]
         return row[:, :3], np.stack([x, y, pose[:, 2] + row[:, 5]], axis=1)
@@ -200,7 +200,7 @@ class Evaluation:
             kidnap.agrees(time_s, _near(off_earlier_passes(*passes, _pose(truth), experiences.robot)))
 
     def _meets(self, kidnap: Kidnapping, truth: Truth) -> bool:
-        before = self._rows[max(0, kidnap.ticks - MOST_TICKS) : kidnap.ticks : EVERY]
+        before = self._rows[max(0, kidnap.ticks - MOST_TICKS) : kidnap.ticks : EVERY, :3].astype(np.float64)
         near = np.hypot(before[:, 0] - truth.x, before[:, 1] - truth.y) <= MET_M
         return bool((np.abs(wrap_angles(before[near, 2] - truth.heading_rad)) <= MET_RAD).any())
 

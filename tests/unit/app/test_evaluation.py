@@ -129,7 +129,7 @@ def test_paths_and_errors() -> None:
     assert odometry[-1] == pytest.approx([165.0, 0.0])
     assert evaluation.path_m == pytest.approx(150.0)
     map_error, odometry_error = evaluation.errors(map_)
-    assert map_error == pytest.approx(0.0, abs=1e-9)
+    assert map_error == pytest.approx(0.0, abs=1e-6)
     assert odometry_error == pytest.approx(15 / math.sqrt(12), rel=1e-3)  # a tenth too long, evenly
     assert evaluation.errors(map_, 10)[1] == pytest.approx(odometry_error, rel=0.01)
     assert evaluation.made_at(0, map_) == (7.0, 1.0)
@@ -145,7 +145,7 @@ def test_the_map_is_judged_as_it_is_now() -> None:
     map_.poses = np.zeros((2, 3))
     map_.active = 1
     drive(evaluation, map_, 100, start=100)
-    assert evaluation.errors(map_)[0] == pytest.approx(0.0, abs=1e-9)
+    assert evaluation.errors(map_)[0] == pytest.approx(0.0, abs=1e-6)
     map_.poses[1] = 0.0, 2.0, 0.0
     assert evaluation.errors(map_)[0] > 0.5
 
@@ -272,7 +272,7 @@ def test_thousands_of_experiences_keep_where_they_were_made() -> None:
     for i in range(2500):
         map_.active = i
         evaluation.record(i * DT, Truth(i, -i, 0.0, 0.0, 0.0), map_, True, STILL)
-    assert evaluation.memory_bytes >= 2500 * 13 * 8
+    assert evaluation.memory_bytes >= 2500 * (9 * 4 + 4 * 8)
     for i in (0, 1023, 1024, 2499):
         assert evaluation.made_at(i, map_) == (i, -i)
 

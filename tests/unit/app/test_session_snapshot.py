@@ -218,7 +218,7 @@ BREAKS: list[tuple[str, object, str]] = [
     ("pilot._seeker._closer._ask_s", 9.0, "how long they are still taken for true must be a number from"),
     ("pilot._explorer._rng", np.random.default_rng(3), "must draw from one generator"),
     ("evaluation._count", 10**6, "the path's length must be a whole number"),
-    ("evaluation._experience", np.full(4096, 77), "active experiences must be from 0 to"),
+    ("evaluation._experience", np.full(4096, 77, np.int32), "active experiences must be from 0 to"),
     ("brain.local_view.params", None, "local_view"),
     ("seed", -1, "seed must be a whole number"),
     ("config", None, "config must be a Config"),
