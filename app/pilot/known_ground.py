@@ -8,8 +8,11 @@ test_what_lies_on_another_submap_hides_no_opening}.
 
 from __future__ import annotations
 
-import cv2
+import math
+from typing import Any
+
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 from disk import kind
@@ -28,6 +31,7 @@ BEYOND_M = (1.7, 3.3, 4.1)  # so far along a beam it is looked whether that grou
 ABOUT = 2  # ... which counts for places within so many times THIN_M
 
 _Array = NDArray[np.float64]
+_Cells = NDArray[np.int64]
 
 
 @kind("known ground/5")
@@ -58,7 +62,7 @@ class KnownGround:
         """The robot drove `way_m` and is at the active experience."""
         self.now_s += dt
         self.new_m += way_m
-        self._latest = np.concatenate([self._latest[1:], ranges_m[None]])
+        self._latest[:-1], self._latest[-1] = self._latest[1:], ranges_m
         if len(experiences) == 0:
             return
         if len(experiences) < self.count:  # another map
@@ -96,7 +100,7 @@ class KnownGround:
         before = np.hypot(*(placed([done[:3] for done in self._done], poses) - here).T) < THIN_M
         self._done.append((experience, x, y, self.now_s + OPENING_AGAIN_S * 2.0 ** int(before.sum())))
 
-    def openings(self, experiences: ExperienceMap) -> tuple[NDArray[np.int64], _Array, _Array]:
+    def openings(self, experiences: ExperienceMap) -> tuple[_Cells, _Array, NDArray[np.floating[Any]]]:
         """Experiences (k,), the places (k, 2), m, map frame, that were seen from there and never driven on, and how much
         new ground is expected about each, (k,), m².
 
@@ -104,31 +108,30 @@ class KnownGround:
         """
         submaps = experiences.submap_of[: self.count]
         own = submaps == submaps[experiences.active]
-        rows, begin, bearing, free_m = self._beams(experiences, own)
-        along = np.column_stack([np.minimum(free_m, OPENING_MOST_M), np.tile(BEYOND_M, (len(rows), 1))])
-        k, at = np.nonzero(along <= free_m[:, None])
-        heading = begin[:, 2] + bearing
-        places = begin[k, :2] + along[k, at, None] * np.column_stack([np.cos(heading), np.sin(heading)])[k]
+        rows, begin, heading, free_m = self._beams(experiences, own)
         done = [tried[:3] for tried in self._done if own[tried[0]] and tried[3] > self.now_s]
         known = np.concatenate([experiences.poses[: self.count][own, :2], placed(done, experiences.poses)])
-        new, area = _new_ground(places, known)
-        new &= at == 0
-        return rows[k[new]], places[new], area[new] + UNSEEN_M2
+        seen = _seen(begin, np.column_stack([np.cos(heading), np.sin(heading)]), free_m)
+        cells, size = _cells(np.concatenate([seen.reshape(-1, 2), known]))
+        about = _new_cells(cells[: -len(known)].reshape(seen.shape), cells[-len(known) :], size)
+        new = about > 0
+        return rows[new], seen[new, 0], THIN_M**2 * about[new] + UNSEEN_M2
 
     def _beams(
         self, experiences: ExperienceMap, own: NDArray[np.bool_]
     ) -> tuple[NDArray[np.int64], _Array, _Array, _Array]:
         """The beams that see open floor, from the experiences and from where the robot is: from which experience, (k,), and
-        place, (k, 3); where to (rad, left positive) and how far (m)."""
+        pose, (k, 3), m and rad; where to (rad) and how far (m). Map frame."""
         rows, beams = np.nonzero((self._seen_m[: self.count] >= OPENING_M) & own[:, None])
         now_m, robot = self._latest.min(axis=0), experiences.robot
         now = np.flatnonzero(now_m >= OPENING_M)
-        here = np.tile((robot.x, robot.y, robot.heading_rad), (len(now), 1))
+        here = np.broadcast_to((robot.x, robot.y, robot.heading_rad), (len(now), 3))
         seen_m = np.concatenate([self._seen_m[rows, beams], now_m[now]]).astype(np.float64)
+        begin = np.concatenate([experiences.poses[rows], here])
         return (
             np.concatenate([rows, np.full(len(now), experiences.active)]).astype(np.int64),
-            np.concatenate([experiences.poses[rows], here]),
-            self._angles[np.concatenate([beams, now])],
+            begin,
+            begin[:, 2] + self._angles[np.concatenate([beams, now])],
             seen_m - OPENING_GAP_M,
         )
 
@@ -143,18 +146,52 @@ def placed(points: list[tuple[int, float, float]], poses: _Array) -> _Array:
     return np.stack([x + c * rows[:, 1] - s * rows[:, 2], y + s * rows[:, 1] + c * rows[:, 2]], axis=1)
 
 
-def _new_ground(places: _Array, known: _Array) -> tuple[NDArray[np.bool_], _Array]:
-    """Which of the places (k, 2) lie farther than THIN_M (to twice that) from all known ones (n, 2), and how much of such
-    ground, m², lies within `ABOUT` cells of each."""
-    if not len(places):
-        return np.zeros(0, np.bool_), np.zeros(0)
-    both = np.concatenate([places, known])
-    low = both.min(axis=0) - (ABOUT + 1) * THIN_M
-    size = np.ceil((both.max(axis=0) - low) / THIN_M).astype(np.int64) + ABOUT + 1
-    old, new = np.zeros(size, np.uint8), np.zeros(size, np.uint8)
-    cells = np.floor((both - low) / THIN_M).astype(np.int64)
-    mine, theirs = tuple(cells[: len(places)].T), tuple(cells[len(places) :].T)
-    old[theirs] = new[mine] = 1
-    new[cv2.dilate(old, np.ones((3, 3))) > 0] = 0
-    area = THIN_M**2 * cv2.boxFilter(new, cv2.CV_64F, (2 * ABOUT + 1, 2 * ABOUT + 1), normalize=False)
-    return new[mine] > 0, area[mine].astype(np.float64)
+@njit(cache=True, nogil=True)
+def _seen(begin: _Array, along: _Array, free_m: _Array) -> _Array:
+    """Floor that each of k beams sees, (k, 1 + len(BEYOND_M), 2), m: first the place of the opening, then what lies BEYOND_M
+    along it, or that place again where the beam ends before. begin: (k, 3); along, its direction: (k, 2)."""
+    seen = np.empty((len(begin), 1 + len(BEYOND_M), 2))
+    for k in range(len(begin)):
+        opening_m = min(free_m[k], OPENING_MOST_M)
+        for b in range(1 + len(BEYOND_M)):
+            m = opening_m if b == 0 or BEYOND_M[b - 1] > free_m[k] else BEYOND_M[b - 1]
+            for a in range(2):
+                seen[k, b, a] = begin[k, a] + m * along[k, a]
+    return seen
+
+
+@njit(cache=True, nogil=True)
+def _cells(points: _Array) -> tuple[_Cells, tuple[int, int]]:
+    """The cells of THIN_M in which points, (n, 2) m, lie, on a grid that reaches past all of them, and its size."""
+    low, high = points[0].copy(), points[0].copy()
+    for p in points:
+        for a in range(2):
+            low[a], high[a] = min(low[a], p[a]), max(high[a], p[a])
+    low -= (ABOUT + 1) * THIN_M
+    cells = np.empty(points.shape, np.int64)
+    for k in range(len(points)):
+        for a in range(2):
+            cells[k, a] = math.floor((points[k, a] - low[a]) / THIN_M)
+    width, depth = np.ceil((high - low) / THIN_M) + ABOUT + 1
+    return cells, (int(width), int(depth))
+
+
+@njit(cache=True, nogil=True)
+def _new_cells(seen: _Cells, known: _Cells, size: tuple[int, int]) -> _Cells:
+    """For each of k beams that saw these cells of a grid, (k, m, 2): 0 where the first of them is a known one, (n, 2), or
+    beside one; else how many new ones were seen within `ABOUT` cells of it, (k,)."""
+    new, about = np.zeros(size, np.bool_), np.zeros(len(seen), np.int64)
+    for k in range(len(seen)):
+        for b in range(seen.shape[1]):
+            new[seen[k, b, 0], seen[k, b, 1]] = True
+    for k in range(len(known)):
+        for x in range(known[k, 0] - 1, known[k, 0] + 2):
+            for y in range(known[k, 1] - 1, known[k, 1] + 2):
+                new[x, y] = False
+    for k in range(len(seen)):
+        at_x, at_y = seen[k, 0]
+        if new[at_x, at_y]:
+            for x in range(at_x - ABOUT, at_x + ABOUT + 1):
+                for y in range(at_y - ABOUT, at_y + ABOUT + 1):
+                    about[k] += new[x, y]
+    return about

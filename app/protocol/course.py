@@ -111,8 +111,9 @@ class Course:
     def tick(self, what: str) -> Iterator[str]:
         """One tick."""
         yield what
+        here, experience = self.here, self.session.brain.experience_map.active
         for name, tag in self.tags.items():
-            if tag.note(self.here, self.session.brain.experience_map.active):
+            if tag.note(here, experience):
                 self.mark(f"{name} is tagged, {tag.away_m:.2f} m from it", kind="tagged")
 
     def ticks_in(self, seconds: float) -> int:

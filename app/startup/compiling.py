@@ -28,6 +28,7 @@ from numba.core.dispatcher import Dispatcher
 from numba.core.event import Event, Listener, register  # pyright: ignore[reportUnknownVariableType]
 
 import app.pilot.bars
+import app.pilot.known_ground
 import app.pilot.local_movement
 import ratslam_core.experience_map.places
 import ratslam_core.extensions.evidence
@@ -52,6 +53,7 @@ from app.config import Config
 from app.evaluation import Coverage
 from app.pilot import Pilot
 from app.pilot.bars import Bars
+from app.pilot.known_ground import KnownGround
 from app.pilot.local_movement import LocalMovement
 from app.pilot.route_following import RouteFollower
 from disk import kernel_cache
@@ -246,6 +248,9 @@ def loops() -> None:
     local, bars = LocalMovement(_ANGLES, config.pilot.echo_s), Bars()
     bars.add(made.robot, 0.0, config.pilot)
     RouteFollower(0, bars).step(made, local, 0.1, config.pilot)
+    ground = KnownGround(_ANGLES)
+    ground.step(made, _RANGES, 0.1, 0.1)
+    ground.openings(made)
     find_places(made)
 
 
@@ -258,7 +263,8 @@ PARTS: dict[str, tuple[Callable[[], None], tuple[Any, ...]]] = {
                       ratslam_core.local_view.matcher, ratslam_core.local_view.view_links)),
     "loops": (loops, (ratslam_core.pose_graph.relaxation, ratslam_core.solvers.laplacian, ratslam_core.solvers.dijkstra,
                       ratslam_core.extensions.evidence, ratslam_core.extensions.odometry_edges,
-                      ratslam_core.extensions.scan_matching, ratslam_core.experience_map.places, app.pilot.bars)),
+                      ratslam_core.extensions.scan_matching, ratslam_core.experience_map.places, app.pilot.bars,
+                      app.pilot.known_ground)),
     "maps": (maps, (ratslam_core.goal_memory, ratslam_core.occupancy_grid)),
 }  # fmt: skip
 

@@ -146,12 +146,11 @@ class PoseCells:
         """Excite, inhibit, normalise. ACRA 2004 eqs. 10-12. Returns the winner."""
         p, n = self.params, self._n
         inhibit = np.float32(p.inhibit)
-        kept = self._cells[:n].copy(), self._values[:n].copy()
         self._excite_all(inhibit)
         self._n = attractor.inhibit_and_normalise(self._cells, self._values, self._n, self._slot, inhibit)
         gone = self._n == 0
         if gone:
-            self._put(*kept)
+            self._put(self._spare_cells[:n], self._spare_values[:n])  # as they were before
         self._find()
         if gone:
             raise ValueError(
