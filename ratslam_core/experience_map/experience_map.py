@@ -31,6 +31,7 @@ from ratslam_core.pose_graph.relaxation import has_diverged
 from ratslam_core.pose_graph.transitions import PreintegratedOdometry, moved_by, require_behaviour
 from ratslam_core.types import IDENTITY, Floats, Ints, Odometry, Packet, Pose2, Recognition, require_finite, wrap_angle
 
+MANY = 2000  # experiences, of which a larger map has more places that look alike
 CARRIED = 400.0  # cells: how far off the robot may be after it was carried
 BLIND = 4.0  # cells: when there is nothing to see, only experiences this near in the map can become active,
 BLIND_LEVELS = 10.0  # and such an observation is as uncertain as one that differs by so much
@@ -273,7 +274,9 @@ class ExperienceMap(PoseGraph):
         return 0.5 * (self._off(pose) / sigma) ** 2
 
     def _against_error(self, experience: int) -> float:
-        merge, unnoticed = self._merge_before(experience), self.evidence.params.unnoticed
+        merge = self._merge_before(experience)
+        # To have been carried to this one of many places is the less likely, the more there are.
+        unnoticed = self.evidence.params.unnoticed + max(0.0, math.log(len(self) / MANY))
         return unnoticed if merge is None else min(merge.log_odds, unnoticed)
 
     def _merge_before(self, experience: int) -> Merge | None:

@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from ratslam_core import ExperienceMap, ExperienceMapParams, Odometry, Packet, Pose2, Recognition
+from ratslam_core.experience_map import experience_map
 from ratslam_core.extensions import evidence as law
 from ratslam_core.extensions.evidence import AGAINST, FOR, LIKENESS, NATS, PRIOR, Evidence, nats
 from ratslam_core.extensions.submaps import Merge, Submaps, move
@@ -462,6 +463,13 @@ def test_who_was_carried_unnoticed_gives_way_and_its_odometry_with_it() -> None:
     assert robot.off_m < 0.5
     softer = map_.transitions.weight[: map_.transitions.count] < weights[: map_.transitions.count]
     assert softer.any()
+
+
+def test_in_a_large_map_it_is_less_likely_to_have_been_carried_to_one_place(monkeypatch: pytest.MonkeyPatch) -> None:
+    map_ = Robot().map
+    assert map_._against_error(0) == map_.evidence.params.unnoticed
+    monkeypatch.setattr(experience_map, "MANY", len(map_) / math.e)
+    assert map_._against_error(0) == pytest.approx(map_.evidence.params.unnoticed + 1.0)
 
 
 def test_a_hypothesis_that_is_a_little_off_is_no_proof_against_odometry() -> None:
