@@ -1,7 +1,7 @@
-"""Exploring: following the wall on the left, turning back to look, crossing the room. IROS 2005 section IV.D.
+"""Exploring: following the wall on the left, turning back to look. IROS 2005 section IV.D.
 
 [ours] Wall following alone never enters the middle of a room, so from time to time the robot crosses it in a random
-direction.
+direction, and it looks back for a metre only. With `retrace` it does as the paper says: test_looking_back.py.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from app.pilot.behaviours import Behaviour
 from app.pilot.local_movement import LocalMovement
+from app.pilot.looking_back import LookingBack
 from app.pilot.params import PilotParams
 from disk import kind
 from ratslam_core import Odometry
@@ -48,7 +49,7 @@ class Turn:
     left: float
 
 
-@kind("explorer/1")
+@kind("explorer/2")
 class Explorer:
     """Proposes (speed m/s, yaw rate rad/s) for each tick and names the behaviour."""
 
@@ -57,11 +58,17 @@ class Explorer:
         self._begin_following()
         self._way, self._far = 0.0, math.inf  # since it last looked back, m: wandering; to new ground, first of all
         self._back = 0.0  # what is left to drive back while looking, m
+        self._looking = LookingBack()
         self._cross_in_s = math.inf  # time of wall following until the next crossing; looking back does not reset it
 
     @property
     def doing(self) -> Behaviour:
         return _DOING[self._state]
+
+    def move(self, odometry: Odometry, p: PilotParams) -> None:
+        """In each tick, whoever drives."""
+        if _plainly(p):
+            self._looking.move(odometry)
 
     def travel(self, way_m: float, p: PilotParams) -> None:
         """[ours] The robot drove on new ground on a trip of its own; there, too, it turns back to look after a while."""
@@ -89,7 +96,7 @@ class Explorer:
                 return 0.0, math.copysign(p.turn_rate, self._turn.left)
             self._turn, self._clock = None, 0.0
         if self._state == "look":
-            return self._look(moved, local, p)
+            return self._retrace(local, p) if _plainly(p) else self._look(moved, local, p)
         if self._state == "cross":
             return self._cross(local, p)
         return self._follow(ranges_m, odometry.dt, local, p)
@@ -101,6 +108,8 @@ class Explorer:
     def _follow(
         self, ranges_m: NDArray[np.float32], dt: float, local: LocalMovement, p: PilotParams
     ) -> tuple[float, float]:
+        if _plainly(p):
+            return self._follow_plainly(ranges_m, local, p)
         if self._cross_in_s == math.inf:
             self._cross_in_s = p.cross_after_s * float(self._rng.uniform(1 - CROSS_SPREAD, 1 + CROSS_SPREAD))
         self._cross_in_s -= dt
@@ -112,10 +121,20 @@ class Explorer:
             return 0.0, 0.0
         return self._along_the_wall(ranges_m, local, p)
 
+    def _follow_plainly(
+        self, ranges_m: NDArray[np.float32], local: LocalMovement, p: PilotParams
+    ) -> tuple[float, float]:
+        self._looking.note()
+        if not self._looking.is_due(p):
+            return self._along_the_wall(ranges_m, local, p)
+        self._begin_looking_back()
+        return 0.0, p.turn_rate
+
     def _begin_looking_back(self) -> None:
         self._way, self._state, self._stage, self._clock = 0.0, "look", 0, 0.0
         self._turn = Turn(LOOK_TURN_RAD)
         self._back = LOOK_BACK_M
+        self._looking.begin_leg(back=True)
 
     def _along_the_wall(
         self, ranges_m: NDArray[np.float32], local: LocalMovement, p: PilotParams
@@ -146,3 +165,22 @@ class Explorer:
             return 0.0, 0.0
         self._begin_following()
         return 0.0, 0.0
+
+    def _retrace(self, local: LocalMovement, p: PilotParams) -> tuple[float, float]:
+        """After the half turn: back along its path, turn round again, and return. C IV.D."""
+        drive = self._looking.drive(local, p)
+        if drive is not None:
+            return drive
+        self._stage, self._clock = self._stage + 1, 0.0
+        if self._stage == 1:
+            self._turn = Turn(-LOOK_RETURN_RAD)
+            self._looking.begin_leg(back=False)
+        else:
+            self._looking.begin_path()
+            self._begin_following()
+        return 0.0, 0.0
+
+
+def _plainly(p: PilotParams) -> bool:
+    """Whether it wanders as in IROS 2005: the wall, and the way back. [ours] It seeks, or crosses rooms and looks back 1 m."""
+    return p.retrace and not p.seek

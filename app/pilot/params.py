@@ -45,6 +45,10 @@ class PilotParams:
     seek: bool = param(
         True, "the robot goes to new ground, closes loops, goes back and finds out where it is on purpose; off = it only wanders",
         source="ours; off: C IV.D")
+    retrace: bool = param(
+        False,
+        "who only wanders turns back after look_back_after_m or 30 degrees, retraces its path since it last did, and "
+        "returns; off = it looks back 1 m, and crosses rooms", source="C IV.D; off: ours")
     return_sigma_m: float = param(
         1.5, "it goes back to known ground when odometry may be off by this since it left that", 0.01, 1e3, "m")
     loop_share: float = param(

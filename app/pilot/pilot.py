@@ -163,6 +163,7 @@ class Pilot:
         self, ranges_m: NDArray[np.float32], bumped: bool, odometry: Odometry, experiences: ExperienceMap
     ) -> tuple[float, float]:
         self._local.sense(ranges_m, odometry)
+        self._explorer.move(odometry, self.params)
         self._seeker.ground.step(experiences, ranges_m, abs(odometry.speed * odometry.dt), odometry.dt)
         if self.mode == "manual":
             return self._by_hand()

@@ -160,7 +160,8 @@ def differs(situation: Callable[[PilotParams], Trace], p: PilotParams) -> bool:
 @pytest.mark.slow
 def test_a_parameter_acts(subtests: pytest.Subtests) -> None:
     named = {name for others in OTHER.values() for name in others}
-    assert {item.name for item in fields(PilotParams)} == {*named, "goal_place_m"}  # test_goal_place.py
+    elsewhere = "goal_place_m", "retrace"  # test_goal_place.py, test_looking_back.py
+    assert {item.name for item in fields(PilotParams)} == {*named, *elsewhere}
     for situation, others in OTHER.items():
         for name, value in others.items():
             with subtests.test(name):
