@@ -335,14 +335,14 @@ class Found:
 def _kidnapped(job: Job, turn: bool) -> Found:
     session = _explored(job)
     map_ = session.brain.experience_map
-    known, merged = len(map_), map_.submaps.merged
+    known, merged = len(map_), map_.submaps.merged + map_.corrected
     (_turn if turn else _carry)(session)
     right_s = merged_s = merged_off_m = later_off_m = math.inf
     right = wrong = longest = 0
     for tick in range(1, SOON + LATER + 1):
         session.tick()
         off_m, off_rad = session.evaluation.belief_off(session.simulator.truth, map_)
-        if merged_s == math.inf and tick <= SOON and map_.submaps.merged > merged:
+        if merged_s == math.inf and tick <= SOON and map_.submaps.merged + map_.corrected > merged:
             merged_s, merged_off_m = tick / 10, off_m
         believes = map_.active < known
         is_right = believes and off_m <= NEAR_RIGHT_M and off_rad <= NEAR_RIGHT_RAD

@@ -98,14 +98,11 @@ class Brain:
         """Whether the robot knows that it was carried away, and has not been put onto the map again."""
         return self.kidnap_detector.kidnapped
 
-    def declare_kidnapped(self, *, sure: bool = True) -> None:
-        """[ours] The robot was carried and knows it: image and sonars jumped although the wheels did not, or it is told so.
-
-        sure: nothing else can explain it.
-        """
+    def declare_kidnapped(self) -> None:
+        """[ours] The robot was carried and knows it: the image jumped although the wheels did not, or it is told so."""
         self.kidnap_detector.declare(len(self.experience_map))
         if self.carried:
-            self.experience_map.declare_kidnapped(sure=sure)
+            self.experience_map.declare_kidnapped()
             if self.scans is not None:
                 self.scans.forget()
 

@@ -153,8 +153,12 @@ class ExperienceMapPart(Protocol):
     def local_pose(self) -> Pose2: ...
     @property
     def robot(self) -> Pose2: ...
-    def declare_kidnapped(self, *, sure: bool = True) -> None:
+    def declare_kidnapped(self) -> None:
         """The robot was carried, not driven."""
+        ...
+
+    def suspect_kidnap(self) -> bool:
+        """Perhaps it was. False if the map cannot find that out and has to be told one or the other."""
         ...
 
     def declare_found(self) -> None:

@@ -78,16 +78,22 @@ class RatSlam(Brain):
         return Estimate(map_.active, created, map_.robot, packet, seen, jumped)
 
     def _notice_kidnap(self, scan: Floats | None, tick: Tick) -> None:
-        if self.kidnap_detector.observe(self.local_view.image_change, scan, tick.beats):
-            self.declare_kidnapped(sure=self.kidnap_detector.sure)
+        if not self.kidnap_detector.observe(self.local_view.image_change, scan, tick.beats):
+            return
+        if self.kidnap_detector.sure or not self.experience_map.suspect_kidnap():
+            self.declare_kidnapped()
+        elif self.scans is not None:
+            self.scans.forget()
 
     def _hear(self, scan: Floats | None, tick: Tick) -> None:
         if self.scans is not None:
             self.scans.sense(scan, tick.moved, tick.beats)
 
     def _settle(self, seen: Recognition, created: bool, tick: Tick) -> None:
-        known = NOTHING if created or seen.view == NOTHING else self.experience_map.here
         map_ = self.experience_map
+        known = NOTHING if created or seen.view == NOTHING else map_.here
+        if map_.carried and not self.carried:
+            self.kidnap_detector.declare(map_.evidence.known)
         if self.carried and not map_.carried:
             self.kidnap_detector.find()
         elif self.kidnap_detector.settle(map_.agrees, known, tick.beats):

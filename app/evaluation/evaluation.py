@@ -192,7 +192,7 @@ class Evaluation:
         kidnap.drive(way_m)
         if kidnap.met_s is None and self._meets(kidnap, truth):
             kidnap.met_s = time_s - kidnap.at_s
-        kidnap.carried(time_s, experiences.carried)
+        kidnap.carried(time_s, experiences.carried or experiences.suspects_kidnap)
         if kidnap.after_s is None:
             kidnap.believes(time_s, self._right(kidnap, truth, experiences))
         if kidnap.consistent_s is None and time_s - kidnap.at_s < CONSISTENT_WITHIN_S:
@@ -345,7 +345,7 @@ class Kidnapping:
                 self.after_s, self.after_m = (self._right.since_s or 0.0) - self.at_s, self._right.way_m
 
     def carried(self, time_s: float, carried: bool) -> None:
-        """Whether the brain knows that it was carried, and has not joined its map again."""
+        """Whether the brain knows that it was carried, or suspects it, and has not joined its map again."""
         if self._noticed and not carried and self.joined_s is None:
             self.joined_s = time_s - self.at_s
         self._noticed |= carried

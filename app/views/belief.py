@@ -48,7 +48,7 @@ def possible_places(map_: ExperienceMap) -> NDArray[np.float64]:
 
 def other_places(map_: ExperienceMap) -> tuple[Hypothesis, ...]:
     """The hypotheses beside the pose estimate, after a kidnap or in doubt, the likeliest first."""
-    rows, beside = map_.evidence.weighed(map_.robot_here)
+    rows, beside = map_.evidence.weighed(map_)
     if not len(rows) or not (map_.carried or map_.evidence.in_doubt):
         return ()
     all_odds = np.append(rows[:, ODDS], beside)

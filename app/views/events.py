@@ -206,11 +206,13 @@ class EventWatch:
             self.closures.closed(event, start, end)
 
     def _watch_packets(self) -> None:
-        session, carried = self._session, self._session.brain.carried
+        session, brain = self._session, self._session.brain
+        suspects = brain.experience_map.suspects_kidnap
+        carried = brain.carried or suspects
         lost = carried or is_lost(session)
         if lost and not self._at_a_loss:
-            packets = len(session.brain.pose_cells.packets)
-            why = "the image jumped: kidnapped?" if carried else f"{packets} packets compete"
+            jumped = "image and sonars jumped" if suspects else "the image jumped"
+            why = f"{jumped}: kidnapped?" if carried else f"{len(brain.pose_cells.packets)} packets compete"
             self.reasons.lost(self._log.note("lost", why))
         self._at_a_loss, self.lost = lost, is_lost(session)
         self._watch_belief(carried)

@@ -31,8 +31,11 @@ class CellsOnly(ExperienceMap):
         """Between two steps the packet stands, and the robot is where odometry leads from it."""
         self.pose_filter.move(moved_by(odometry), 0.0)
 
-    def declare_kidnapped(self, *, sure: bool = True) -> None:
+    def declare_kidnapped(self) -> None:
         """Nothing is done: only the pose cells can relocalise the robot."""
+
+    def suspect_kidnap(self) -> bool:
+        return False
 
     def declare_found(self) -> None:
         """Nothing was done."""

@@ -156,10 +156,9 @@ class ExperienceMap(PoseGraph):
         t.take_time(row, 0.0, 0.0)
         self.closures += 1
 
-    def declare_kidnapped(self, *, sure: bool = True) -> None:
+    def declare_kidnapped(self) -> None:
         """[ours] The robot was carried, not driven: the way here is no transition, and odometry starts afresh.
 
-        sure: it cannot have been otherwise; if not, it is as likely where odometry leads as at a new place.
         test_experience_map_transitions.py::test_a_kidnap_makes_no_way.
         """
         self._kidnapped, self._sigma = True, CARRIED * self.cell_m
@@ -168,10 +167,23 @@ class ExperienceMap(PoseGraph):
         self.ground.forget()
         if self.params.submaps:
             submap, robot = self.submaps.current, self.robot_here
-            sure |= self.carried and self.evidence.sure
             self.submaps.begin()
-            self.evidence.begin(robot, submap, len(self), sure=sure)
+            self.evidence.begin(robot, submap, len(self))
         self.carried = True
+
+    def suspect_kidnap(self) -> bool:
+        """[ours] Perhaps the robot was carried: it is in doubt. What it maps from now on lies where odometry leads, as a submap
+        would that was merged there at low odds, and can be taken back as one.
+
+        False if the map cannot find that out: it has no submaps, or the robot is lost already.
+        test_evidence.py::test_who_was_perhaps_carried_maps_on_and_is_moved_when_it_was.
+        """
+        if self.carried or not self.params.submaps:
+            return False
+        self.evidence.end()
+        self.evidence.doubt(len(self))
+        self.submaps.last_merge = Merge(len(self), -PRIOR)
+        return True
 
     def declare_found(self) -> None:
         """[ours] The robot that was carried knows again where it is."""
@@ -215,6 +227,12 @@ class ExperienceMap(PoseGraph):
     def lost(self) -> bool:
         """Whether the robot knows that it was carried away, and believes no place."""
         return self.carried and self.evidence.belief is None
+
+    @property
+    def suspects_kidnap(self) -> bool:
+        """Whether the robot is in doubt since an alarm that may be false."""
+        merge = self.submaps.last_merge
+        return merge is not None and self.evidence.in_doubt and self.evidence.known == merge.first
 
     @property
     def belief(self) -> Belief | None:
@@ -267,6 +285,12 @@ class ExperienceMap(PoseGraph):
             return PRIOR
         return -min(self._against_drift(experience, pose), self._against_error(experience))
 
+    @property
+    def log_prior_of_new(self) -> float:
+        """Log odds, while in doubt, that the robot was carried to a new place, or that what it maps was merged wrongly."""
+        merge = self.submaps.last_merge
+        return -min(self.evidence.params.unnoticed, math.inf if merge is None else merge.log_odds)
+
     def _against_drift(self, experience: int, pose: Pose2, precise_m: float = 0.0) -> float:
         """precise_m: how precisely the pose is known."""
         drift = self.params.odometry_drift * open_way_m(self.transitions, experience, len(self))
@@ -297,7 +321,9 @@ class ExperienceMap(PoseGraph):
             return self._most_energetic(packet, seen.view, math.inf), seen
         if self.evidence.known and (merged := self._merged(by)) is not None:
             return merged
-        if self.evidence.idle:
+        if self._merge_disproved:
+            self._take_back_merge()
+        elif self.evidence.idle:
             self._end_of_doubt()
         gate = self._gate_m
         best = self._most_energetic(packet, seen.view, gate)
@@ -351,12 +377,10 @@ class ExperienceMap(PoseGraph):
         if by.verification is not None and by.verification.verified(self, belief.experience, observation) is None:
             return None
         view, other = int(self.views[belief.experience]), int(self.submap_of[belief.experience])
-        if other != self.submaps.current:
-            own = self.carried and other < self.submaps.current
-            self.submaps.merge(other, self.submap_of, self.poses, self.robot_here, belief.pose)
-            self.submaps.last_merge = Merge(self.evidence.known, belief.log_odds) if own else None
-        elif self._led_astray(belief):
+        if other == self.submaps.current and self._led_astray(belief):
             self._correct_error(belief)
+        if other != self.submaps.current:
+            self.submaps.merge(other, self.submap_of, self.poses, self.robot_here, belief.pose, belief.log_odds)
         self._end_of_doubt()
         self.carried = False
         return belief.experience, Recognition(view, False, view, by.views.difference_to(view), belief.facing_rad)
@@ -371,14 +395,38 @@ class ExperienceMap(PoseGraph):
 
     def _correct_error(self, belief: Belief) -> None:
         """An earlier merge was wrong, or the robot was carried unnoticed."""
-        self.corrected += 1
+        self.corrected += not self.suspects_kidnap
         merge = self._merge_before(belief.experience)
         if merge is not None and self.here >= merge.first:
-            self.submaps.undo(self.transitions, self.poses, self.robot_here, belief.pose)
-            merge.log_odds, self._arrival = belief.log_odds, None
+            self._part(merge.first)
         else:
             off, sigma = self._off(belief.pose), self.step_sigma_m
             inflate_covariance(self.transitions, belief.experience, self.evidence.known, off, sigma)
+
+    @property
+    def _merge_disproved(self) -> bool:
+        """[ours] Whether the robot is surely not where it was merged, wherever else it may be.
+
+        test_evidence.py::test_a_merge_is_disproved_by_what_is_missing_there.
+        """
+        doubted = self.evidence.in_doubt and self.submaps.last_merge is not None
+        return doubted and self.evidence.here < self.log_prior_of_new - self.evidence.params.believe
+
+    def _take_back_merge(self) -> None:
+        """What it has mapped since is a submap again."""
+        merge = self.submaps.last_merge
+        assert merge is not None
+        if self.here < merge.first:
+            self.declare_kidnapped()
+            return
+        self.evidence.disprove(self, self.submaps.current)
+        self._part(merge.first)
+        self.ground.forget()
+        self.carried = True
+
+    def _part(self, first: int) -> None:
+        self.submaps.part(first, self.submap_of, self.transitions)
+        self._arrival = None
 
     def _end_of_doubt(self) -> None:
         self.evidence.end(len(self) if np.any(self.submap_of != self.submaps.current) else 0)

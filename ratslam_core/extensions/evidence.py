@@ -7,11 +7,11 @@ observation is there than at a wrong place that looked right a metre before: `NA
 unit of evidence; and since wrong places can stay alike for longer, a unit takes a share of what was gathered away.
 Beside all hypotheses stands that of a new place, for and against which nothing speaks.
 
-A robot that noticed that it was carried may be anywhere. One whose observation lies outside the validation gate is in
-doubt: *here*, where odometry has led it, is a rival, too, if what is seen there speaks against it; what lies farther off than
-odometry can have drifted begins with odds against it, at most those of having been carried unnoticed; and since an exact
-copy of a place may exist, observations say no more than MOST_SAID. So in a twin odometry decides, where observations
-cannot.
+A robot that noticed that it was carried may be anywhere. One whose observation lies outside the validation gate, or whose
+alarm may be false, is in doubt: *here*, where odometry has led it, is a rival, too, if what is seen there speaks against
+it; what lies farther off than odometry can have drifted begins with odds against it, at most those of having been carried
+unnoticed; and since an exact copy of a place may exist, observations say no more than MOST_SAID. So in a twin odometry
+decides, where observations cannot.
 
 A corridor that was driven twice lies on the map twice, a little apart, until something closes that loop. So what is near a
 hypothesis is the same place, no rival, and what is seen *here* as well says nothing against there.
@@ -88,6 +88,8 @@ class Map(Protocol):
     def submap_of(self) -> Ints32: ...
     @property
     def robot_here(self) -> Pose2: ...
+    @property
+    def log_prior_of_new(self) -> float: ...
     def log_prior(self, experience: int, pose: Pose2, /) -> float: ...
 
 
@@ -102,7 +104,7 @@ class Belief:
     facing_rad: float  # of the robot, relative to that at which this view was taken
 
 
-@kind("evidence/4")
+@kind("evidence/5")
 class Evidence:
     """The hypotheses, and what speaks for each."""
 
@@ -110,7 +112,6 @@ class Evidence:
         """cell_m: side of a cell of the pose cells."""
         self.params, self.cell_m = params, cell_m
         self.belief: Belief | None = None
-        self.sure = True  # that the robot was carried
         self.in_doubt = False  # it knows of no kidnap, but saw something where it cannot be
         self.here = 0.0  # log odds that the robot is where odometry has led it, while in doubt
         self.known = 0  # experiences among which it is; 0: there is nothing to find out
@@ -120,11 +121,11 @@ class Evidence:
         self._unheard = 0.0  # and since echoes were last asked
         self._quiet = 0.0  # units of way since something was last seen where the robot cannot be
 
-    def begin(self, robot: Pose2, submap: int, known: int, *, sure: bool) -> None:
-        """The robot was carried away from this submap, or perhaps not, if not sure. robot: where odometry would have it."""
+    def begin(self, robot: Pose2, submap: int, known: int) -> None:
+        """The robot was carried away from this submap. robot: where odometry would have it."""
         self.end(known)
-        self.sure, self._units = sure, 1.0  # the first observation counts whole
-        self._rows[0] = robot.x, robot.y, robot.heading_rad, PRIOR if sure else 0.0, 1.0, submap, math.inf
+        self._units = 1.0  # the first observation counts whole
+        self._rows[0] = robot.x, robot.y, robot.heading_rad, PRIOR, 1.0, submap, math.inf
         self._count = 1
 
     def doubt(self, known: int) -> None:
@@ -133,6 +134,13 @@ class Evidence:
             self.end(known)
             self.in_doubt, self.here, self._units = True, 0.0, 1.0
         self._quiet = 0.0
+
+    def disprove(self, map_: Map, submap: int) -> None:
+        """The robot is not where odometry has led it, and no longer maps there; all that was said stays."""
+        here = map_.robot_here
+        place = np.array([here.x, here.y, here.heading_rad])
+        self._count = _begin(self._rows, self._count, place, self.here, submap, math.inf)
+        self.in_doubt = False
 
     def end(self, known: int = 0) -> None:
         """The robot is on the map again. known: how many experiences there are, if some still lie on other submaps."""
@@ -231,18 +239,18 @@ class Evidence:
             odds = prior + nats(likeness[k], 0)
             self._count = _begin(self._rows, self._count, places[k], odds, submaps[k], prior + MOST_SAID)
 
-    def weighed(self, robot: Pose2) -> tuple[Floats, list[float]]:
+    def weighed(self, map_: Map) -> tuple[Floats, list[float]]:
         """The hypotheses of another place than where the robot maps, (n, 7), and the log odds of all that stands beside them."""
         rows = self.hypotheses
         if not self.in_doubt:
             return rows, [0.0]
-        here = self._same_place(rows, robot)
+        here = self._same_place(rows, map_.robot_here)
         # What is seen here, too, says nothing against there: they may be two passes of one place.
-        return rows[~here], [*np.minimum([self.here, *rows[here, ODDS]], 0.0).tolist(), -self.params.unnoticed]
+        return rows[~here], [*np.minimum([self.here, *rows[here, ODDS]], 0.0).tolist(), map_.log_prior_of_new]
 
     def _believe(self, map_: Map, views: LocalViewPart, known: Ints) -> None:
         self.belief = None
-        rows, beside = self.weighed(map_.robot_here)
+        rows, beside = self.weighed(map_)
         if not len(rows):
             return
         best = int(np.argmax(rows[:, ODDS]))

@@ -5,8 +5,10 @@ not, and bend both. On a submap it maps what is there. Where the evidence is str
 submap is moved as a whole, and a loop closure ties the two. test_evidence.py::{
 test_what_is_believed_changes_no_map_and_a_submap_is_merged_as_a_whole,test_the_younger_submap_becomes_part_of_the_older}.
 A merge may be wrong, in a twin of the right place. So it is remembered which experiences came with it and how sure it was,
-until the robot has driven on for long; when evidence proves that it is elsewhere, all that tied them to the older map goes,
-and they are moved there instead. test_evidence.py::test_a_merge_that_proves_wrong_is_undone.
+until the robot has driven on for long; when evidence proves that it is elsewhere, or not here, all that tied them to the
+older map goes, and they are a submap again. test_evidence.py::{test_a_merge_that_proves_wrong_is_undone,
+test_a_merge_is_disproved_by_what_is_missing_there}. An alarm that may be false is treated as a merge, at low odds, of what
+comes after it. test_evidence.py::test_who_was_perhaps_carried_maps_on_and_is_moved_when_it_was.
 With `experience_map.submaps` off there is one map, as in the papers, and a robot that is lost believes every observation.
 """
 
@@ -54,25 +56,26 @@ class Submaps:
             if self.last_merge.log_odds >= most:
                 self.last_merge = None
 
-    def merge(self, other: int, submaps: Ints32, poses: Floats, robot: Pose2, claimed: Pose2) -> None:
-        """The robot, which is at `robot` on the current submap, is at `claimed` on the other. The younger one moves, and becomes
-        part of the older.
+    def merge(self, other: int, submaps: Ints32, poses: Floats, robot: Pose2, claimed: Pose2, log_odds: float) -> None:
+        """The robot, which is at `robot` on the current submap, is at `claimed` on the other, with these log odds. The younger
+        one moves, and becomes part of the older.
 
         submaps: of each experience, (n,); poses: of each, (n, 3). Both are changed in place.
         """
         younger, older = max(self.current, other), min(self.current, other)
         moved = submaps == younger
-        move(np.flatnonzero(moved), poses, *((robot, claimed) if self.current == younger else (claimed, robot)))
+        came = self.current == younger
+        move(np.flatnonzero(moved), poses, *((robot, claimed) if came else (claimed, robot)))
+        self.last_merge = Merge(int(np.argmax(moved)), log_odds) if came else None
         submaps[moved] = self.current = older
         self.merged += 1
 
-    def undo(self, t: Transitions, poses: Floats, robot: Pose2, claimed: Pose2) -> None:
-        """The last merge was wrong: the robot is at `claimed`, not at `robot`, and so is all that came with it."""
-        assert self.last_merge is not None
-        ends = t.ends[: t.count]
-        came = ends >= self.last_merge.first
+    def part(self, first: int, submaps: Ints32, t: Transitions) -> None:
+        """The last merge was wrong, or the robot was carried: this experience and all after it become a submap."""
+        self.begin()
+        came = t.ends[: t.count] >= first
         t.let_go(np.flatnonzero(came.any(axis=1) & ~came.all(axis=1)))
-        move(np.arange(self.last_merge.first, len(poses)), poses, robot, claimed)
+        submaps[first:] = self.current
 
 
 def move(which: Ints, poses: Floats, robot: Pose2, claimed: Pose2) -> None:

@@ -72,8 +72,7 @@ def _evidence(evidence: Evidence, n: int, submaps: int) -> None:
     number("the way since echoes were asked", evidence._unheard, 0.0, LARGEST)
     number("the way since a doubt", evidence._quiet, 0.0, LARGEST)
     number("log odds of here", evidence.here, -FAR_M, FAR_M)
-    for name in ("sure", "in_doubt"):
-        true(isinstance(getattr(evidence, name), bool), f"{name} must be true or false")
+    true(isinstance(evidence.in_doubt, bool), "in_doubt must be true or false")
     if evidence.belief is not None:
         true(isinstance(evidence.belief, Belief), "what is believed must be a belief")
         whole("the experience that is believed", evidence.belief.experience, 0, n - 1)

@@ -84,7 +84,7 @@ class Map:
     def __init__(self) -> None:
         self.poses = np.zeros((1, 3))
         self.active = 0
-        self.carried = self.lost = False
+        self.carried = self.suspects_kidnap = self.lost = False
         self.local_pose = Pose2(0.0, 0.0, 0.0)
 
     @property

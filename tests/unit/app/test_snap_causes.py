@@ -179,6 +179,21 @@ def test_who_was_carried_believes_then_joins_and_what_was_said_adds_up_to_the_od
     assert why.since_s == why.said[0][0] < why.said[-1][0] == why.time_s
 
 
+def test_a_kidnap_that_is_only_suspected_is_marked() -> None:
+    """Perhaps it was carried, since image and sonars jumped; and the evaluation counts it as noticed."""
+    session = Session(OFFICE, 3)
+    log = EventLog(session)
+    watch = EventWatch(session, log)
+    session.tick()
+    session.kidnap()
+    session.brain.experience_map.suspect_kidnap()
+    watch.watch()
+    session.evaluation.kidnaps[-1].carried(session.time_s, False)
+    assert [event.text for event in log.events if event.kind == "lost"] == ["image and sonars jumped: kidnapped?"]
+    session.tick()
+    assert session.evaluation.kidnaps[-1]._noticed
+
+
 def test_each_other_place_that_is_believed_after_a_kidnap_is_marked() -> None:
     """*Why there?* is about the last one: the first may have been wrong."""
     session = Session(OFFICE, 3)

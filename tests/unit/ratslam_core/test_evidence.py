@@ -66,6 +66,7 @@ class Known:
     count: int = 30
     robot_here: Pose2 = Pose2(0.0, 0.0, 0.0)
     prior: float = PRIOR
+    log_prior_of_new: float = -EvidenceParams().unnoticed
     cell_m: float = CELL_M
 
     def __post_init__(self) -> None:
@@ -77,9 +78,9 @@ class Known:
         return self.prior
 
 
-def carried(known: Known, expected: Pose2 | None = None, *, sure: bool = True) -> Evidence:
+def carried(known: Known, expected: Pose2 | None = None) -> Evidence:
     evidence = Evidence(EvidenceParams(), CELL_M)
-    evidence.begin(expected or Pose2(50.0, 50.0, 0.0), 0, known.count, sure=sure)
+    evidence.begin(expected or Pose2(50.0, 50.0, 0.0), 0, known.count)
     return evidence
 
 
@@ -227,7 +228,7 @@ def test_the_younger_submap_becomes_part_of_the_older() -> None:
         for _ in range(2):
             submaps.begin()
         submaps.current = at
-        submaps.merge(other, of, rows, Pose2(0.0, 0.0, 0.0), Pose2(1.0, 2.0, 0.0))
+        submaps.merge(other, of, rows, Pose2(0.0, 0.0, 0.0), Pose2(1.0, 2.0, 0.0), 7.0)
         assert of.tolist() == [0, 0, 1, 1, 1]
         assert rows[:, :2].tolist() == [[0.0, 0.0]] * 3 + [moved] * 2
         assert (submaps.current, submaps.begun, submaps.merged) == (1, 2, 1)
@@ -358,17 +359,45 @@ def test_without_submaps_the_first_observation_is_believed() -> None:
     assert robot.map.evidence.known == 0
 
 
-def test_a_doubtful_jump_after_a_sure_one_makes_nothing_doubtful() -> None:
-    """Who was perhaps not carried is as likely where odometry leads as at a new place."""
-    for sure, odds in ((True, PRIOR), (False, 0.0)):
-        assert carried(Known(), Pose2(2.0, 0.0, 0.0), sure=sure).hypotheses[0, law.ODDS] == odds
-    robot = Robot(50)
-    robot.map.declare_kidnapped()
-    robot.map.declare_kidnapped(sure=False)
-    assert robot.map.evidence.sure
-    robot.map.declare_found()
-    robot.map.declare_kidnapped(sure=False)
-    assert not robot.map.evidence.sure
+def test_who_was_perhaps_carried_maps_on_and_is_moved_when_it_was() -> None:
+    """What it made since then comes along, the way that was never driven goes, and odometry is not to blame."""
+    robot = Robot()
+    map_, known = robot.map, len(robot.map)
+    before, weights = map_.poses[:known].copy(), map_.transitions.weight[: map_.transitions.count].copy()
+    assert map_.suspect_kidnap()
+    assert not map_.carried
+    assert map_.log_prior(0, Pose2(50.0, 50.0, 0.0)) == PRIOR
+    robot.carry(Pose2(1.0, 0.1, 0.0), noticed=False)
+    robot.drive(40)
+    robot.recognises = True
+    while map_.submaps.merged == 0:
+        assert map_.suspects_kidnap
+        robot.drive(1)
+        assert robot.pose.x < 6.0
+    assert map_.corrected == 0
+    made = np.array([[p.x, p.y] for p in robot.views.taken[known : known + 3]])
+    assert map_.poses[known : known + 3, :2] == pytest.approx(made, abs=0.5)
+    assert np.array_equal(map_.poses[:known], before)
+    assert np.array_equal(map_.transitions.weight[: len(weights)], weights)
+    assert (map_.transitions.weight[: map_.transitions.count] > 0)[across(map_.transitions, known)].sum() == 1
+
+
+def test_who_was_not_carried_after_all_has_the_map_that_it_would_have() -> None:
+    told, suspicious = Robot(recognises=True), Robot(recognises=True)
+    assert suspicious.map.suspect_kidnap()
+    for robot in (told, suspicious):
+        robot.drive(250)
+    assert not suspicious.map.evidence.in_doubt
+    assert suspicious.map.corrected == suspicious.map.submaps.begun == 0
+    assert np.array_equal(told.map.poses, suspicious.map.poses)
+    assert np.array_equal(told.map.links, suspicious.map.links)
+
+
+def test_where_nothing_can_be_found_out_a_suspicion_is_a_kidnap() -> None:
+    lost = Robot(50)
+    lost.map.declare_kidnapped()
+    assert not lost.map.suspect_kidnap()
+    assert not Robot(submaps=False).map.suspect_kidnap()
 
 
 # ---------------------------------------------------------------- in doubt: it does not know of any kidnap
@@ -421,7 +450,7 @@ def test_where_it_is_mapping_is_no_other_place() -> None:
         drive(evidence, known, views, 1)
         known.robot_here = views.robot.compose(Pose2(0.3, 0.2, 0.2))
         assert evidence.belief is None
-    elsewhere, here = evidence.weighed(known.robot_here)
+    elsewhere, here = evidence.weighed(known)
     assert evidence.hypotheses[:, law.ODDS].max() > 1.0  # beside exactly where it maps, since the map is a little off
     assert (len(elsewhere), max(here)) == (0, 0.0)
 
@@ -472,6 +501,24 @@ def test_in_a_large_map_it_is_less_likely_to_have_been_carried_to_one_place(monk
     assert map_._against_error(0) == pytest.approx(map_.evidence.params.unnoticed + 1.0)
 
 
+def test_a_merge_is_disproved_by_what_is_missing_there() -> None:
+    """Perhaps it was carried, and it was, to where it had never been: it misses what it should see if it had not been."""
+    robot = Robot(recognises=True)
+    map_, known = robot.map, len(robot.map)
+    before = map_.poses.copy()
+    robot.carry(Pose2(2.0, 40.0, 0.0), noticed=False)
+    map_.pose_filter.local = map_.pose(map_.here).inverse().compose(Pose2(2.0, 0.0, 0.0))
+    assert map_.suspect_kidnap()
+    while not map_.carried:
+        robot.drive(1)
+        assert robot.pose.x < 6.0
+    assert map_.lost
+    assert len(map_) > known
+    assert map_.submap_of.tolist() == [0] * known + [1] * (len(map_) - known)
+    assert np.array_equal(map_.poses[:known], before)
+    assert not (map_.transitions.weight[: map_.transitions.count] > 0)[across(map_.transitions, known)].any()
+
+
 def test_a_hypothesis_that_is_a_little_off_is_no_proof_against_odometry() -> None:
     """It was not carried: what it sees is put 2.5 m beside where odometry led, farther than that can have drifted."""
     robot = Robot(recognises=True)
@@ -493,8 +540,8 @@ def merged_wrongly(robot: Robot, sure: float) -> int:
     robot.recognises = False
     robot.drive(40)
     claimed = Pose2(robot.pose.x + 6.0, 0.0, 0.0)
-    map_.submaps.merge(0, map_.submap_of, map_.poses, map_.robot_here, claimed)
-    map_.submaps.last_merge = Merge(known, sure)
+    map_.submaps.merge(0, map_.submap_of, map_.poses, map_.robot_here, claimed, sure)
+    assert map_.submaps.last_merge == Merge(known, sure)
     t = map_.transitions
     row = t.add(len(map_) - 1, known - 10, travelled=True)
     t.measure(row, Pose2(0.0, 0.0, 0.0), 0.5, t.move[row], 0.0)
@@ -512,7 +559,7 @@ def test_a_merge_that_proves_wrong_is_undone() -> None:
     t = map_.transitions
     before, weights, ties = map_.poses[:known].copy(), t.weight[: t.count].copy(), across(t, known)
     assert t.travelled[: t.count][ties].any()
-    while map_.corrected == 0:
+    while map_.submaps.merged == 1:
         robot.drive(1)
         assert robot.pose.x < 8.0
     assert robot.off_m < 0.5

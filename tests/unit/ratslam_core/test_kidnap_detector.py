@@ -109,8 +109,8 @@ def test_sonars_help_to_notice_a_kidnap(subtests: pytest.Subtests) -> None:
             brain.step(before.image, STILL, ranges_m=np.full(8, 1.0))
             brain.step(after.image, STILL, ranges_m=np.array([1.0, 1.0, 1.0, *[others_m] * 5]))
             assert brain.local_view.image_change == pytest.approx(alike)
-            assert brain.lost is noticed
-            assert not noticed or brain.experience_map.evidence.sure is (alike > 1)
+            assert brain.lost is (noticed and alike > 1)
+            assert brain.experience_map.evidence.in_doubt is (noticed and alike < 1)
 
 
 def used_to_little(detector: KidnapDetector) -> KidnapDetector:
