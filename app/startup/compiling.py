@@ -294,7 +294,7 @@ class EngineStarter:
 
     def start(self) -> None:
         if self._compiling:
-            print(f"RatSLAM wakes up: {WORDS}, which takes some twenty seconds ...", flush=True)
+            print(f"RatSLAM wakes up: {WORDS}, some twenty seconds if nothing else runs ...", flush=True)
         self._thread.start()
 
     def stop(self, patience_s: float | None = None) -> None:
