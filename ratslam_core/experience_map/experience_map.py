@@ -23,7 +23,7 @@ from ratslam_core.extensions.exact_solver import ExactSolver
 from ratslam_core.extensions.familiar_ground import FamiliarGround, NewGround
 from ratslam_core.extensions.odometry_edges import NoOdometryEdges, OdometryEdges, inflate_covariance, open_way_m
 from ratslam_core.extensions.pose_filter import SNAP, PoseFilter
-from ratslam_core.extensions.submaps import Merge, Submaps
+from ratslam_core.extensions.submaps import Submaps
 from ratslam_core.params import EvidenceParams, ExperienceMapParams
 from ratslam_core.parts import GeometricVerification, LocalViewPart, Optimiser
 from ratslam_core.pose_graph.pose_graph import PoseGraph
@@ -44,7 +44,7 @@ class Senses(NamedTuple):
     verification: GeometricVerification | None = None  # drops the observations that it does not confirm
 
 
-@kind("experience map/8")
+@kind("experience map/9")
 class ExperienceMap(PoseGraph):
     """Experiences, links and a robot among them. `step` finds or makes the active experience and learns the transition to it."""
 
@@ -182,7 +182,7 @@ class ExperienceMap(PoseGraph):
             return False
         self.evidence.end()
         self.evidence.doubt(len(self))
-        self.submaps.last_merge = Merge(len(self), -PRIOR)
+        self.submaps.suspect(len(self), -PRIOR)
         return True
 
     def declare_found(self) -> None:
@@ -231,8 +231,8 @@ class ExperienceMap(PoseGraph):
     @property
     def suspects_kidnap(self) -> bool:
         """Whether the robot is in doubt since an alarm that may be false."""
-        merge = self.submaps.last_merge
-        return merge is not None and self.evidence.in_doubt and self.evidence.known == merge.first
+        merges = self.submaps.merges
+        return bool(merges) and self.evidence.in_doubt and self.evidence.known == merges[-1].first
 
     @property
     def belief(self) -> Belief | None:
@@ -288,7 +288,7 @@ class ExperienceMap(PoseGraph):
     @property
     def log_prior_of_new(self) -> float:
         """Log odds, while in doubt, that the robot was carried to a new place, or that what it maps was merged wrongly."""
-        merge = self.submaps.last_merge
+        merge = self.submaps.least_sure()
         return -min(self.evidence.params.unnoticed, math.inf if merge is None else merge.log_odds)
 
     def _against_drift(self, experience: int, pose: Pose2, precise_m: float = 0.0) -> float:
@@ -298,15 +298,10 @@ class ExperienceMap(PoseGraph):
         return 0.5 * (self._off(pose) / sigma) ** 2
 
     def _against_error(self, experience: int) -> float:
-        merge = self._merge_before(experience)
+        merge = self.submaps.least_sure(experience)
         # To have been carried to this one of many places is the less likely, the more there are.
         unnoticed = self.evidence.params.unnoticed + max(0.0, math.log(len(self) / MANY))
         return unnoticed if merge is None else min(merge.log_odds, unnoticed)
-
-    def _merge_before(self, experience: int) -> Merge | None:
-        """The merge that put the robot where it is on the map that this experience was of before; None if it cannot be undone."""
-        merge = self.submaps.last_merge
-        return merge if merge is not None and experience < merge.first else None
 
     def _off(self, pose: Pose2) -> float:
         return math.hypot(pose.x - self.robot_here.x, pose.y - self.robot_here.y)
@@ -324,7 +319,7 @@ class ExperienceMap(PoseGraph):
         if self._merge_disproved:
             self._take_back_merge()
         elif self.evidence.idle:
-            self._end_of_doubt()
+            self._end_of_doubt(self.evidence.here - self.log_prior_of_new)
         gate = self._gate_m
         best = self._most_energetic(packet, seen.view, gate)
         if seen.view < 0 or not self.params.match_view or math.isinf(gate):
@@ -381,7 +376,7 @@ class ExperienceMap(PoseGraph):
             self._correct_error(belief)
         if other != self.submaps.current:
             self.submaps.merge(other, self.submap_of, self.poses, self.robot_here, belief.pose, belief.log_odds)
-        self._end_of_doubt()
+        self._end_of_doubt(belief.log_odds)
         self.carried = False
         return belief.experience, Recognition(view, False, view, by.views.difference_to(view), belief.facing_rad)
 
@@ -396,7 +391,7 @@ class ExperienceMap(PoseGraph):
     def _correct_error(self, belief: Belief) -> None:
         """An earlier merge was wrong, or the robot was carried unnoticed."""
         self.corrected += not self.suspects_kidnap
-        merge = self._merge_before(belief.experience)
+        merge = self.submaps.least_sure(belief.experience)
         if merge is not None and self.here >= merge.first:
             self._part(merge.first)
         else:
@@ -409,12 +404,12 @@ class ExperienceMap(PoseGraph):
 
         test_evidence.py::test_a_merge_is_disproved_by_what_is_missing_there.
         """
-        doubted = self.evidence.in_doubt and self.submaps.last_merge is not None
+        doubted = self.evidence.in_doubt and bool(self.submaps.merges)
         return doubted and self.evidence.here < self.log_prior_of_new - self.evidence.params.believe
 
     def _take_back_merge(self) -> None:
         """What it has mapped since is a submap again."""
-        merge = self.submaps.last_merge
+        merge = self.submaps.least_sure()
         assert merge is not None
         if self.here < merge.first:
             self.declare_kidnapped()
@@ -428,7 +423,13 @@ class ExperienceMap(PoseGraph):
         self.submaps.part(first, self.submap_of, self.transitions)
         self._arrival = None
 
-    def _end_of_doubt(self) -> None:
+    def _end_of_doubt(self, log_odds: float) -> None:
+        """[ours] log_odds: that the robot is where it maps from now on. What it mapped before an alarm says so, and counts.
+
+        test_evidence.py::test_an_alarm_that_was_false_leaves_the_map_as_sure_as_before.
+        """
+        if self.suspects_kidnap:
+            self.submaps.confirm(log_odds)
         self.evidence.end(len(self) if np.any(self.submap_of != self.submaps.current) else 0)
 
     def _measured(

@@ -34,7 +34,7 @@ class Merge:
     log_odds: float  # that it was right
 
 
-@kind("submaps/1")
+@kind("submaps/2")
 class Submaps:
     """The submap that the robot is on. Submaps have numbers, 0 for the first; `Experiences.submap` says which lies where."""
 
@@ -42,19 +42,31 @@ class Submaps:
         self.current = 0
         self.begun = 0  # how many were begun after the first
         self.merged = 0  # how many of them were merged with another
-        self.last_merge: Merge | None = None  # the last one, as long as it may be undone
+        self.merges: list[Merge] = []  # that may be undone, the oldest first
 
     def begin(self) -> None:
         """The robot was carried away: what it makes from now on lies on a new submap."""
         self.begun += 1
-        self.current, self.last_merge = self.begun, None
+        self.current, self.merges = self.begun, []
 
     def move(self, cells: float, most: float) -> None:
         """The robot drove on. most: log odds of a merge above which it need no longer be undone."""
-        if self.last_merge is not None:
-            self.last_merge.log_odds += SURER * cells
-            if self.last_merge.log_odds >= most:
-                self.last_merge = None
+        for merge in self.merges:
+            merge.log_odds += SURER * cells
+        self.merges = [merge for merge in self.merges if merge.log_odds < most]
+
+    def suspect(self, first: int, log_odds: float) -> None:
+        """Perhaps the robot was carried, as the experience before `first` was the last: with these log odds it was not."""
+        self.merges = [*(merge for merge in self.merges if merge.first < first), Merge(first, log_odds)]
+
+    def confirm(self, log_odds: float) -> None:
+        """The last merge was right with at least these log odds."""
+        self.merges[-1].log_odds = max(self.merges[-1].log_odds, log_odds)
+
+    def least_sure(self, experience: int = -1) -> Merge | None:
+        """Of the merges since this experience was made that which is most likely to have been wrong, None if none may be."""
+        since = [merge for merge in self.merges if merge.first > experience]
+        return min(since, key=lambda merge: merge.log_odds, default=None)
 
     def merge(self, other: int, submaps: Ints32, poses: Floats, robot: Pose2, claimed: Pose2, log_odds: float) -> None:
         """The robot, which is at `robot` on the current submap, is at `claimed` on the other, with these log odds. The younger
@@ -66,12 +78,12 @@ class Submaps:
         moved = submaps == younger
         came = self.current == younger
         move(np.flatnonzero(moved), poses, *((robot, claimed) if came else (claimed, robot)))
-        self.last_merge = Merge(int(np.argmax(moved)), log_odds) if came else None
+        self.merges = [Merge(int(np.argmax(moved)), log_odds)] if came else []
         submaps[moved] = self.current = older
         self.merged += 1
 
     def part(self, first: int, submaps: Ints32, t: Transitions) -> None:
-        """The last merge was wrong, or the robot was carried: this experience and all after it become a submap."""
+        """A merge was wrong, or the robot was carried: this experience and all after it become a submap."""
         self.begin()
         came = t.ends[: t.count] >= first
         t.let_go(np.flatnonzero(came.any(axis=1) & ~came.all(axis=1)))

@@ -55,9 +55,11 @@ def experience_map(map_: ExperienceMap, views: int) -> None:
     whole("the latest submap", map_.submaps.begun)
     whole("the submap", map_.submaps.current, 0, map_.submaps.begun)
     whole("merged submaps", map_.submaps.merged, 0, map_.submaps.begun)
-    if map_.submaps.last_merge is not None:
-        whole("the first experience of a merge", map_.submaps.last_merge.first, 0, n)
-        number("the log odds of a merge", map_.submaps.last_merge.log_odds, -LARGEST, LARGEST)
+    least = 0
+    for merge in map_.submaps.merges:
+        whole("the first experience of a merge", merge.first, least, n)
+        number("the log odds of a merge", merge.log_odds, -LARGEST, LARGEST)
+        least = merge.first + 1
     _evidence(map_.evidence, n, map_.submaps.begun)
 
 

@@ -393,6 +393,39 @@ def test_who_was_not_carried_after_all_has_the_map_that_it_would_have() -> None:
     assert np.array_equal(told.map.links, suspicious.map.links)
 
 
+def test_an_alarm_that_was_false_leaves_the_map_as_sure_as_before() -> None:
+    """What is found where it should be speaks for all that was mapped since, and a merge of before is still in question."""
+    robot = Robot(recognises=True)
+    map_, merge = robot.map, Merge(5, 9.0)
+    map_.submaps.merges = [merge]
+    back = Pose2(1.0, 0.0, 0.0)
+    robot.carry(back, noticed=False)
+    map_.pose_filter.local = map_.pose(map_.here).inverse().compose(back)
+    assert map_.suspect_kidnap()
+    assert map_.log_prior_of_new == PRIOR
+    while map_.evidence.in_doubt:
+        robot.drive(1)
+    robot.drive(1)
+    assert map_.submaps.merges == [merge]
+    assert map_.log_prior_of_new == -merge.log_odds < -9.0
+
+
+def test_of_several_merges_the_least_sure_is_in_question() -> None:
+    submaps = Submaps()
+    submaps.merges = [Merge(3, 7.0), Merge(10, 8.0)]
+    submaps.suspect(20, 2.0)
+    assert [submaps.least_sure(before) for before in (-1, 5, 10, 20)] == [
+        Merge(20, 2.0),
+        Merge(20, 2.0),
+        Merge(20, 2.0),
+        None,
+    ]
+    submaps.confirm(9.0)
+    assert [submaps.least_sure(before) for before in (-1, 5, 10)] == [Merge(3, 7.0), Merge(10, 8.0), Merge(20, 9.0)]
+    submaps.suspect(20, 2.0)  # again, before anything was made
+    assert submaps.merges == [Merge(3, 7.0), Merge(10, 8.0), Merge(20, 2.0)]
+
+
 def test_where_nothing_can_be_found_out_a_suspicion_is_a_kidnap() -> None:
     lost = Robot(50)
     lost.map.declare_kidnapped()
@@ -541,7 +574,7 @@ def merged_wrongly(robot: Robot, sure: float) -> int:
     robot.drive(40)
     claimed = Pose2(robot.pose.x + 6.0, 0.0, 0.0)
     map_.submaps.merge(0, map_.submap_of, map_.poses, map_.robot_here, claimed, sure)
-    assert map_.submaps.last_merge == Merge(known, sure)
+    assert map_.submaps.merges == [Merge(known, sure)]
     t = map_.transitions
     row = t.add(len(map_) - 1, known - 10, travelled=True)
     t.measure(row, Pose2(0.0, 0.0, 0.0), 0.5, t.move[row], 0.0)
@@ -579,15 +612,15 @@ def across(t: Transitions, known: int) -> NDArray[np.bool_]:
 
 def test_who_drives_on_unchallenged_need_not_undo_its_merge() -> None:
     submaps = Submaps()
-    submaps.last_merge = Merge(3, 7.0)
+    submaps.merges = [Merge(3, 7.0)]
     for metres in (50.0, 49.0):
         submaps.move(metres / CELL_M, 11.0)
-        assert submaps.last_merge is not None
+        assert submaps.merges
     submaps.move(2.0 / CELL_M, 11.0)
-    assert submaps.last_merge is None
-    submaps.last_merge = Merge(3, 7.0)
+    assert not submaps.merges
+    submaps.merges = [Merge(3, 7.0)]
     submaps.begin()
-    assert submaps.last_merge is None
+    assert not submaps.merges
 
 
 def test_a_long_loop_closes_and_odometry_is_not_to_blame() -> None:
