@@ -271,6 +271,9 @@ def _seeker(seeker: Seeker, experiences: int) -> None:
         number(f"the {name} of the known ground", value, 0.0, LONGEST_S)
     for place in ground._done:
         within("an opening", np.array(place, np.float64), -FAR_M, FAR_M)
+    for experience, took_s in ground._missed:
+        whole("where a trip did not get to", experience, 0, count - 1)
+        number("how long that trip took", took_s, 0.0, LONGEST_S)
     if seeker.follower is not None:
         _follower(seeker.follower, experiences)
     true(isinstance(seeker.explored, bool), "whether all is explored must be a truth value")

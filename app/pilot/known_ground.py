@@ -3,7 +3,7 @@ sonars saw from there. Where they saw open floor that it never drove on, the map
 
 test_known_ground.py::{test_open_floor_that_was_never_driven_on_is_an_opening, test_what_was_driven_on_is_no_opening,
 test_what_it_sees_ahead_look_after_look_is_an_opening, test_an_opening_is_tried_again_later,
-test_what_lies_on_another_submap_hides_no_opening}.
+test_a_way_that_led_nowhere_counts_for_what_lies_near, test_what_lies_on_another_submap_hides_no_opening}.
 """
 
 from __future__ import annotations
@@ -24,6 +24,7 @@ PLACE_REACH_M = 1.5  # a visit to a place counts for all experiences this near
 OPENING_M = 2.0  # sonars that see as far as this see open floor ...
 OPENING_GAP_M, OPENING_MOST_M = 0.7, 2.5  # ... whose place is so much before the echo, and at most so far away
 LOOKS = 3  # in a row must have seen it: a single echo may be false
+MISSED_M = 4.0  # where a trip did not get to a place, it would perhaps not get to others this near
 OPENING_AGAIN_S = 120.0  # one that has been tried is tried again after this time, after twice as long the next time
 THIN_M = 0.8  # the map is thin where no experience is about this near
 UNSEEN_M2 = 5.0  # so much new ground is expected behind each opening, beside what is seen of it
@@ -34,7 +35,7 @@ _Array = NDArray[np.float64]
 _Cells = NDArray[np.int64]
 
 
-@kind("known ground/5")
+@kind("known ground/6")
 class KnownGround:
     """Rows belong to the experiences, by number."""
 
@@ -48,6 +49,9 @@ class KnownGround:
         self._latest = np.zeros((LOOKS, len(self._angles)), np.float32)  # sonar ranges, the newest last
         # Openings that have been tried: m, in an experience's frame; and until when they are left alone, s.
         self._done: list[tuple[int, float, float, float]] = []
+        self._missed: list[
+            tuple[int, float]
+        ] = []  # where trips did not get to: the experience, and how long they took, s
         self.now_s = self.new_m = 0.0  # time; distance driven since the robot was last on old ground
 
     @property
@@ -66,7 +70,7 @@ class KnownGround:
         if len(experiences) == 0:
             return
         if len(experiences) < self.count:  # another map
-            self.count, self._done = 0, []
+            self.count, self._done, self._missed = 0, [], []
         new = len(experiences) - self.count
         if new > 0:
             self._grow(len(experiences))
@@ -99,6 +103,17 @@ class KnownGround:
         here = placed([(experience, x, y)], poses)
         before = np.hypot(*(placed([done[:3] for done in self._done], poses) - here).T) < THIN_M
         self._done.append((experience, x, y, self.now_s + OPENING_AGAIN_S * 2.0 ** int(before.sum())))
+
+    def missed(self, experience: int, took_s: float) -> None:
+        """A trip of so long did not get to this experience: the map is wrong there, or something is in the way."""
+        self._missed.append((experience, took_s))
+
+    def lost_s(self, experiences: _Cells, poses: _Array) -> _Array:
+        """Time, (k,) s, that trips to places about these experiences, (k,), took and did not get there."""
+        lost = np.zeros(len(experiences))
+        for missed, took_s in self._missed:
+            lost += took_s * (np.hypot(*(poses[experiences, :2] - poses[missed, :2]).T) < MISSED_M)
+        return lost
 
     def openings(self, experiences: ExperienceMap) -> tuple[_Cells, _Array, NDArray[np.floating[Any]]]:
         """Experiences (k,), the places (k, 2), m, map frame, that were seen from there and never driven on, and how much

@@ -6,8 +6,8 @@ near but far by the links, which closes a loop; into the opening with the most n
 new does it wander, and between whiles visit the place where it has not been for longest. On a submap, as after a kidnap, it
 looks for the rest of its map: it does not go back, any beam makes an opening, and those near where the submap began come
 first: perhaps it was not carried at all, and then the rest lies there. Its input is map, sonars and odometry only.
-test_seeking.py::{test_it_goes_where_open_floor_was_seen, test_on_new_ground_for_long_it_goes_back,
-test_before_it_came_to_anything_again_it_goes_back_to_where_it_began,
+test_seeking.py::{test_it_goes_where_open_floor_was_seen, test_where_a_trip_did_not_get_to_the_next_does_not_go,
+test_on_new_ground_for_long_it_goes_back, test_before_it_came_to_anything_again_it_goes_back_to_where_it_began,
 test_with_nothing_new_it_goes_where_it_has_not_been_for_longest, test_while_there_is_an_opening_it_does_not_wander,
 test_on_a_submap_it_does_not_go_back, test_on_a_submap_it_begins_where_that_began}.
 """
@@ -133,6 +133,8 @@ class Seeker:
         self.ground.been_at(goal.x, goal.y, experiences.poses)
         if isinstance(self._last_leg, Opening):
             self.ground.tried(self.follower.goal, self._last_leg.place.x, self._last_leg.place.y, experiences.poses)
+            if not self._on_last_leg:
+                self.ground.missed(self.follower.goal, self._trip_s)
         barred = self.follower.state == "exploring"
         self.stop()
         self._wait_s = AFTER_BARRED_S if barred else 0.0
@@ -185,7 +187,7 @@ class Seeker:
         begin = np.where(near[:, None], (robot.x, robot.y), poses[rows, :2])
         leg_s = np.hypot(*(places - begin).T) / p.cruise_speed
         bearing = wrap_angles(np.arctan2(places[:, 1] - robot.y, places[:, 0] - robot.x) - robot.heading_rad)
-        cost = leg_s + np.where(near, np.abs(bearing) / p.turn_rate, times[rows])
+        cost = leg_s + np.where(near, np.abs(bearing) / p.turn_rate, times[rows]) + self.ground.lost_s(rows, poses)
         if _searching(experiences):
             x, y = poses[np.argmax(experiences.submap_of == experiences.submap_of[experiences.active]), :2]
             cost = cost + SEARCH_HOME * np.hypot(places[:, 0] - x, places[:, 1] - y) / p.cruise_speed

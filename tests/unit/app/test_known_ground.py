@@ -9,6 +9,7 @@ import pytest
 
 from app.pilot.known_ground import (
     LOOKS,
+    MISSED_M,
     OLD_AFTER_S,
     OPENING_AGAIN_S,
     OPENING_MOST_M,
@@ -97,6 +98,18 @@ def test_an_opening_is_tried_again_later() -> None:
         assert len(openings(ground, map_)[0]) < before
         ground.now_s += 2.0
         assert len(openings(ground, map_)[0]) == before
+
+
+def test_a_way_that_led_nowhere_counts_for_what_lies_near() -> None:
+    ground, map_ = driven(along(100))
+    ground.missed(20, 100.0)
+    ground.missed(30, 20.0)
+    near = np.abs(np.arange(100)[:, None] - (20, 30)) * 0.1 < MISSED_M - 1e-9
+    for shift in (0.0, 5.0):
+        map_.poses[:, :2] += shift
+        assert ground.lost_s(np.arange(100), map_.poses) == pytest.approx(near @ (100.0, 20.0))
+    ground, map_ = driven(along(100))
+    assert not ground.lost_s(np.arange(100), map_.poses).any()
 
 
 def test_what_lies_on_another_submap_hides_no_opening() -> None:

@@ -156,6 +156,24 @@ def test_of_two_openings_the_one_with_more_new_ground_for_the_way_is_taken() -> 
         assert run.pilot._seeker.reason.startswith("new ground, ")
 
 
+def test_where_a_trip_did_not_get_to_the_next_does_not_go() -> None:
+    """The map has a way where there is a wall. It used to set out for what lay there again and again, for hours."""
+    run = a_run(two_sides(), (4.0, 0.0, 4.0, 8.0), **NO_LOOPS)
+    run.pilot._explorer._far = 0.0  # it has looked behind itself
+    ground = ground_of(run, (slice(30, 33), RIGHT, 5.0), (slice(10, 14), AHEAD, 5.0))
+    goal, seeker = chosen(run), run.pilot._seeker
+    assert goal in range(30, 33)
+    while not ground._missed:
+        run.tick()
+        assert len(run.track) < 1500
+    ((missed, took_s),) = ground._missed
+    assert missed == goal
+    assert 10.0 < took_s < 0.1 * len(run.track)
+    ground._done = []  # it is tried again after a while
+    seeker.stop()
+    assert chosen(run) in range(10, 14)
+
+
 def test_where_odometry_may_be_far_off_it_goes_back() -> None:
     map_ = two_sides()
     for most_m, new_m in ((1.0, 101.0), (100.0, 101.0), (100.0, 99.0)):
