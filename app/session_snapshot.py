@@ -286,6 +286,10 @@ def _seeker(seeker: Seeker, experiences: int) -> None:
     times = array("times by the links", closer._times, np.float64, (np.size(closer._times),))
     true(not np.isnan(times).any(), "times by the links must be numbers")
     number("how long they are still taken for true", closer._ask_s, -LONGEST_S, ASK_S)
+    for tried in closer._tried:
+        within("where it set out to close a loop", np.array(tried.begin, np.float64), -FAR_M, FAR_M)
+        whole("what it headed for", tried.goal)
+        number("until when that is left alone", tried.until_s)
     leg = seeker._last_leg
     true(leg is None or leg is closer or isinstance(leg, Opening), "the last leg of a trip must be one")
     if leg is closer:

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from app.pilot.loop_closing import LOOP_AGAIN_S, LOOP_S, MIDDLE_M, LoopCloser
+from app.pilot.loop_closing import FAR_M, LOOP_AGAIN_S, LOOP_S, MIDDLE_M, LoopCloser
 from app.pilot.params import PilotParams
 from ratslam_core import Pose2
 
@@ -102,6 +102,22 @@ def test_what_the_sonars_do_not_see_is_no_loop() -> None:
 
 
 def test_it_is_not_tried_again_at_once() -> None:
+    """Neither from there nor to there; after each trial it is left alone for twice as long."""
     map_, closer = closing()
-    assert not chooses(map_, closer, now_s=1000.0 + LOOP_AGAIN_S - 1.0)
-    assert chooses(map_, closer, now_s=1000.0 + LOOP_AGAIN_S + 1.0)
+    now_s, goal = 1000.0, closer._goal
+    for wait_s in (LOOP_AGAIN_S, 2 * LOOP_AGAIN_S, 4 * LOOP_AGAIN_S):
+        assert not chooses(map_, closer, now_s=now_s + wait_s - 1.0)
+        now_s += wait_s
+        assert chooses(map_, closer, now_s=now_s)
+        assert closer._goal == goal
+
+
+def test_from_elsewhere_it_does_not_head_for_the_same() -> None:
+    map_, closer = closing()
+    first = map_.poses[closer._goal, :2]
+    map_.robot = Pose2(-5.0, FAR_M + 0.1, 0.0)
+    afresh = LoopCloser(ANGLES)
+    assert chooses(map_, afresh)
+    assert math.dist(map_.poses[afresh._goal, :2], first) < FAR_M
+    assert chooses(map_, closer)
+    assert math.dist(map_.poses[closer._goal, :2], first) >= FAR_M
