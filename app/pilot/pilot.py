@@ -228,7 +228,8 @@ class Pilot:
         self, follower: RouteFollower, odometry: Odometry, experiences: ExperienceMap
     ) -> tuple[float, float] | None:
         """The drive towards the goal. None: no route is known, so explore."""
-        target = follower.step(experiences, self._local, odometry.dt, self.params, sure=not experiences.lost)
+        sure = not (experiences.lost or experiences.suspects_kidnap)
+        target = follower.step(experiences, self._local, odometry.dt, self.params, sure=sure)
         if follower.state == "arrived":
             self.behaviour = Behaviour.AT_THE_GOAL
             self._freeing.at_rest()

@@ -153,7 +153,8 @@ class RouteFollower:
     ) -> tuple[float, float] | None:
         """The next point to head for, metres in the robot's frame. None: it has arrived, or no route is known.
 
-        sure: [ours] a lost robot is at the goal by its estimate only. It looks around until a place is accepted.
+        sure: [ours] a robot that is lost, or was perhaps carried, is at the goal by its estimate only. It looks around until it
+        knows: if it stood still, it would never find out.
         test_routes.py::test_who_is_lost_has_not_arrived.
         """
         self.failed = False

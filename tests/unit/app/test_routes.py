@@ -263,6 +263,11 @@ def test_who_is_lost_has_not_arrived() -> None:
     map_.lost = True
     run.run(1.0)
     assert run.pilot.goal_state == (goal, "exploring")
+    map_.lost = False
+    run.run(60.0)
+    map_.suspects_kidnap = True
+    run.run(1.0)
+    assert run.pilot.goal_state == (goal, "exploring")
     map_.landed, map_.robot = 1, Pose2(1.0, 0.6, 0.0)  # it is on a submap, the goal is not
     follower = RouteFollower(goal)
     for map_.lost, state in ((True, "exploring"), (False, "unreachable")):

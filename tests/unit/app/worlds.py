@@ -41,7 +41,7 @@ class HandMadeMap:
         self.params = ExperienceMapParams()
         self.pace = 0.0  # links take as long as `link_times` says, whatever their length
         self.trials: list[tuple[int, int, bool]] = []
-        self.lost = self.carried = False
+        self.lost = self.carried = self.suspects_kidnap = False
         self.evidence = Evidence(EvidenceParams(), 0.25)
         self.dropped_links: list[tuple[int, int]] = []
         self.landed = 10**9  # experiences from this one on lie on a submap of their own
