@@ -80,7 +80,8 @@ class RatSlam(Brain):
     def _notice_kidnap(self, scan: Floats | None, tick: Tick) -> None:
         if not self.kidnap_detector.observe(self.local_view.image_change, scan, tick.beats):
             return
-        if self.kidnap_detector.sure or not self.experience_map.suspect_kidnap():
+        driven = not tick.moved.still  # driving is all that a false alarm comes of
+        if self.kidnap_detector.sure or not driven or not self.experience_map.suspect_kidnap():
             self.declare_kidnapped()
         elif self.scans is not None:
             self.scans.forget()

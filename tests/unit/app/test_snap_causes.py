@@ -194,6 +194,22 @@ def test_a_kidnap_that_is_only_suspected_is_marked() -> None:
     assert session.evaluation.kidnaps[-1]._noticed
 
 
+@pytest.mark.parametrize("drives", [True, False])
+def test_an_alarm_is_only_suspected_where_driving_may_explain_it(drives: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Who stands still would wait for ever for what tells it."""
+    session = Session(OFFICE, 3)
+    session.drive(0.2 * drives, 0.0)
+    for _ in range(20):
+        session.tick()
+    detector, map_ = session.brain.kidnap_detector, session.brain.experience_map
+    alarms = iter([True])
+    monkeypatch.setattr(detector, "observe", lambda *_: next(alarms, False))
+    detector.sure = False
+    session.tick()
+    assert map_.suspects_kidnap == drives
+    assert session.brain.carried != drives
+
+
 def test_each_other_place_that_is_believed_after_a_kidnap_is_marked() -> None:
     """*Why there?* is about the last one: the first may have been wrong."""
     session = Session(OFFICE, 3)
