@@ -49,9 +49,8 @@ class KnownGround:
         self._latest = np.zeros((LOOKS, len(self._angles)), np.float32)  # sonar ranges, the newest last
         # Openings that have been tried: m, in an experience's frame; and until when they are left alone, s.
         self._done: list[tuple[int, float, float, float]] = []
-        self._missed: list[
-            tuple[int, float]
-        ] = []  # where trips did not get to: the experience, and how long they took, s
+        # Experiences that trips did not get to, and how long those took, s.
+        self._missed: list[tuple[int, float]] = []
         self.now_s = self.new_m = 0.0  # time; distance driven since the robot was last on old ground
 
     @property

@@ -4,7 +4,7 @@ A view is recognised where it was seen before, from the same side. So the robot 
 before, in the middle between the walls, until it is recognised. The map may be off by metres there: the direction of the way
 counts more than its place.
 test_loop_closing.py::{test_known_ground_that_is_far_by_the_links_is_driven_along, test_it_is_not_tried_again_at_once,
-test_from_elsewhere_it_does_not_head_for_the_same,
+test_from_elsewhere_it_does_not_head_for_the_same, test_on_another_map_nothing_was_tried,
 test_what_the_sonars_do_not_see_is_no_loop}.
 """
 
@@ -27,9 +27,7 @@ LOOP_M = 30.0  # known ground at least this far by the links closes a loop, if i
 LOOP_MOST_M = 150.0  # ... of which no more counts than this
 LOOP_S = 40.0  # it is driven along for so long, so that it is recognised
 ASK_S = 1.0  # it is looked so often whether links lead there by now
-LOOP_AGAIN_S = (
-    300.0  # from the same place, or to the same, it is tried again after this time, after twice as long the next time
-)
+LOOP_AGAIN_S = 300.0  # from the same place, or to it, it is tried again after this time, then after twice as long
 MIDDLE_M, MIDDLE_AHEAD_M = 0.5, 1.5  # it keeps to the middle, steering aside by at most this, at a point so far ahead
 
 _Array = NDArray[np.float64]
@@ -85,7 +83,7 @@ class LoopCloser:
         return goal
 
     def _left_alone(self, poses: _Array, now_s: float) -> list[TriedLoop]:
-        if any(tried.goal >= len(poses) for tried in self._tried):  # another map
+        if any(max(tried.goal, tried.begin[0]) >= len(poses) for tried in self._tried):  # another map
             self._tried = []
         return [tried for tried in self._tried if tried.until_s > now_s]
 
