@@ -33,6 +33,7 @@ from app.pilot.opening import Opening
 from app.pilot.route_following import RouteFollower
 from app.pilot.seeking import Seeker
 from app.pilot.stay import Stay
+from app.pilot.tried import Tried
 from app.session import LONGEST_NAME, MOST_TAGS, Session
 from app.sources.simulated import Simulated
 from disk import State, copy_state, decode, encode
@@ -269,11 +270,6 @@ def _seeker(seeker: Seeker, experiences: int) -> None:
     within("the latest looks", latest, 0.0, FAR_M)
     for name, value in (("time", ground.now_s), ("way on new ground", ground.new_m)):
         number(f"the {name} of the known ground", value, 0.0, LONGEST_S)
-    for place in ground._done:
-        within("an opening", np.array(place, np.float64), -FAR_M, FAR_M)
-    for experience, took_s in ground._missed:
-        whole("where a trip did not get to", experience, 0, count - 1)
-        number("how long that trip took", took_s, 0.0, LONGEST_S)
     if seeker.follower is not None:
         _follower(seeker.follower, experiences)
     true(isinstance(seeker.explored, bool), "whether all is explored must be a truth value")
@@ -286,10 +282,8 @@ def _seeker(seeker: Seeker, experiences: int) -> None:
     times = array("times by the links", closer._times, np.float64, (np.size(closer._times),))
     true(not np.isnan(times).any(), "times by the links must be numbers")
     number("how long they are still taken for true", closer._ask_s, -LONGEST_S, ASK_S)
-    for tried in closer._tried:
-        within("where it set out to close a loop", np.array(tried.begin, np.float64), -FAR_M, FAR_M)
-        whole("what it headed for", tried.goal)
-        number("until when that is left alone", tried.until_s)
+    for tried in (ground.tried, ground.missed, closer._begun, closer._sought):
+        _tried(tried)
     leg = seeker._last_leg
     true(leg is None or leg is closer or isinstance(leg, Opening), "the last leg of a trip must be one")
     if leg is closer:
@@ -298,6 +292,17 @@ def _seeker(seeker: Seeker, experiences: int) -> None:
         whole("from where an opening was seen", leg.experience, 0, experiences - 1)
         pose("an opening", leg.place)
         number("how near to the opening it came", leg._nearest_m, 0.0)
+
+
+def _tried(tried: Tried) -> None:
+    true(isinstance(tried, Tried), "what was tried in vain must be remembered")
+    number("how near to a place it counts", tried._about_m, 0.0)
+    number("how long it is left alone at first", tried._again_s, 0.0)
+    true(len(tried._places) == len(tried._until_s), "every place that was tried must have its time")
+    for experience, x, y in tried._places:
+        whole("by what a place that was tried lies", experience, 0)
+        within("a place that was tried", np.array([x, y], np.float64), -FAR_M, FAR_M)
+    within("until when it is left alone", np.array(tried._until_s, np.float64), 0.0, np.inf)
 
 
 def _bars(bars: Bars) -> None:

@@ -2,8 +2,8 @@
 sonars saw from there. Where they saw open floor that it never drove on, the map is thin.
 
 test_known_ground.py::{test_open_floor_that_was_never_driven_on_is_an_opening, test_what_was_driven_on_is_no_opening,
-test_what_it_sees_ahead_look_after_look_is_an_opening, test_an_opening_is_tried_again_later,
-test_a_way_that_led_nowhere_counts_for_what_lies_near, test_what_lies_on_another_submap_hides_no_opening}.
+test_what_it_sees_ahead_look_after_look_is_an_opening, test_a_way_that_led_nowhere_counts_for_what_lies_near,
+test_what_lies_on_another_submap_hides_no_opening}.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from app.pilot.tried import Tried
 from disk import kind
 from ratslam_core import ExperienceMap
 from ratslam_core.types import grown
@@ -24,8 +25,8 @@ PLACE_REACH_M = 1.5  # a visit to a place counts for all experiences this near
 OPENING_M = 2.0  # sonars that see as far as this see open floor ...
 OPENING_GAP_M, OPENING_MOST_M = 0.7, 2.5  # ... whose place is so much before the echo, and at most so far away
 LOOKS = 3  # in a row must have seen it: a single echo may be false
-MISSED_M = 4.0  # where a trip did not get to a place, it would perhaps not get to others this near
-OPENING_AGAIN_S = 120.0  # one that has been tried is tried again after this time, after twice as long the next time
+MISSED_M = 4.0  # where a trip did not get to a place, it would not get to others this near
+AGAIN_S = 120.0  # an opening that was tried is tried again after this time
 THIN_M = 0.8  # the map is thin where no experience is about this near
 UNSEEN_M2 = 5.0  # so much new ground is expected behind each opening, beside what is seen of it
 BEYOND_M = (1.7, 3.3, 4.1)  # so far along a beam it is looked whether that ground is new, too ...
@@ -35,7 +36,7 @@ _Array = NDArray[np.float64]
 _Cells = NDArray[np.int64]
 
 
-@kind("known ground/6")
+@kind("known ground/7")
 class KnownGround:
     """Rows belong to the experiences, by number."""
 
@@ -47,10 +48,8 @@ class KnownGround:
         self._made_s = np.zeros(0)
         self._seen_m = np.zeros((0, len(self._angles)), np.float32)  # sonar ranges where the experience was made
         self._latest = np.zeros((LOOKS, len(self._angles)), np.float32)  # sonar ranges, the newest last
-        # Openings that have been tried: m, in an experience's frame; and until when they are left alone, s.
-        self._done: list[tuple[int, float, float, float]] = []
-        # Experiences that trips did not get to, and how long those took, s.
-        self._missed: list[tuple[int, float]] = []
+        self.tried = Tried(THIN_M, AGAIN_S)  # openings that it drove into
+        self.missed = Tried(MISSED_M, AGAIN_S)  # experiences that trips to openings did not get to
         self.now_s = self.new_m = 0.0  # time; distance driven since the robot was last on old ground
 
     @property
@@ -69,7 +68,7 @@ class KnownGround:
         if len(experiences) == 0:
             return
         if len(experiences) < self.count:  # another map
-            self.count, self._done, self._missed = 0, [], []
+            self.count = 0
         new = len(experiences) - self.count
         if new > 0:
             self._grow(len(experiences))
@@ -94,26 +93,6 @@ class KnownGround:
         near = np.hypot(poses[: self.count, 0] - x, poses[: self.count, 1] - y) < PLACE_REACH_M
         self.last_s[near] = self.now_s
 
-    def tried(self, experience: int, x: float, y: float, poses: _Array) -> None:
-        """The robot tried to drive into an opening; m, in the frame of the experience.
-
-        It may have been turned away by somebody who stood there, so it may try again, after twice as long each time.
-        """
-        here = placed([(experience, x, y)], poses)
-        before = np.hypot(*(placed([done[:3] for done in self._done], poses) - here).T) < THIN_M
-        self._done.append((experience, x, y, self.now_s + OPENING_AGAIN_S * 2.0 ** int(before.sum())))
-
-    def missed(self, experience: int, took_s: float) -> None:
-        """A trip of so long did not get to this experience: the map is wrong there, or something is in the way."""
-        self._missed.append((experience, took_s))
-
-    def lost_s(self, experiences: _Cells, poses: _Array) -> _Array:
-        """Time, (k,) s, that trips to places about these experiences, (k,), took and did not get there."""
-        lost = np.zeros(len(experiences))
-        for missed, took_s in self._missed:
-            lost += took_s * (np.hypot(*(poses[experiences, :2] - poses[missed, :2]).T) < MISSED_M)
-        return lost
-
     def openings(self, experiences: ExperienceMap) -> tuple[_Cells, _Array, NDArray[np.floating[Any]]]:
         """Experiences (k,), the places (k, 2), m, map frame, that were seen from there and never driven on, and how much
         new ground is expected about each, (k,), m².
@@ -123,12 +102,11 @@ class KnownGround:
         submaps = experiences.submap_of[: self.count]
         own = submaps == submaps[experiences.active]
         rows, begin, heading, free_m = self._beams(experiences, own)
-        done = [tried[:3] for tried in self._done if own[tried[0]] and tried[3] > self.now_s]
-        known = np.concatenate([experiences.poses[: self.count][own, :2], placed(done, experiences.poses)])
+        known = np.concatenate([experiences.poses[: self.count][own, :2], self.tried.left_alone(experiences, self.now_s)])
         seen = _seen(begin, np.column_stack([np.cos(heading), np.sin(heading)]), free_m)
         cells, size = _cells(np.concatenate([seen.reshape(-1, 2), known]))
         about = _new_cells(cells[: -len(known)].reshape(seen.shape), cells[-len(known) :], size)
-        new = about > 0
+        new = (about > 0) & ~self.missed.near(experiences, begin[:, :2], self.now_s)
         return rows[new], seen[new, 0], THIN_M**2 * about[new] + UNSEEN_M2
 
     def _beams(
@@ -148,16 +126,6 @@ class KnownGround:
             begin[:, 2] + self._angles[np.concatenate([beams, now])],
             seen_m - OPENING_GAP_M,
         )
-
-
-def placed(points: list[tuple[int, float, float]], poses: _Array) -> _Array:
-    """The places (n, 2), m, map frame, of points in the frames of experiences."""
-    if not points:
-        return np.zeros((0, 2))
-    rows = np.array(points)
-    x, y, heading = poses[rows[:, 0].astype(np.int64)].T
-    c, s = np.cos(heading), np.sin(heading)
-    return np.stack([x + c * rows[:, 1] - s * rows[:, 2], y + s * rows[:, 1] + c * rows[:, 2]], axis=1)
 
 
 @njit(cache=True, nogil=True)

@@ -4,21 +4,21 @@ A view is recognised where it was seen before, from the same side. So the robot 
 before, in the middle between the walls, until it is recognised. The map may be off by metres there: the direction of the way
 counts more than its place.
 test_loop_closing.py::{test_known_ground_that_is_far_by_the_links_is_driven_along, test_it_is_not_tried_again_at_once,
-test_from_elsewhere_it_does_not_head_for_the_same, test_on_another_map_nothing_was_tried,
+test_from_elsewhere_it_does_not_head_for_the_same,
 test_what_the_sonars_do_not_see_is_no_loop}.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from app.pilot.active_localisation import next_on, soonest
-from app.pilot.known_ground import OPENING_GAP_M, placed
+from app.pilot.known_ground import OPENING_GAP_M
 from app.pilot.params import PilotParams
+from app.pilot.tried import Tried
 from disk import kind
 from ratslam_core import ExperienceMap, Pose2, wrap_angles
 
@@ -27,24 +27,14 @@ LOOP_M = 30.0  # known ground at least this far by the links closes a loop, if i
 LOOP_MOST_M = 150.0  # ... of which no more counts than this
 LOOP_S = 40.0  # it is driven along for so long, so that it is recognised
 ASK_S = 1.0  # it is looked so often whether links lead there by now
-LOOP_AGAIN_S = 300.0  # from the same place, or to it, it is tried again after this time, then after twice as long
+LOOP_AGAIN_S = 300.0  # from the same place, or to it, it is tried again after this time
 MIDDLE_M, MIDDLE_AHEAD_M = 0.5, 1.5  # it keeps to the middle, steering aside by at most this, at a point so far ahead
 
 _Array = NDArray[np.float64]
 _Point = tuple[float, float]
 
 
-@kind("tried loop/1")
-@dataclass(slots=True)
-class TriedLoop:
-    """begin: where the robot set out, m, in the frame of an experience; goal: what it headed for."""
-
-    begin: tuple[int, float, float]
-    goal: int
-    until_s: float  # it is left alone so long
-
-
-@kind("loop closer/4")
+@kind("loop closer/5")
 class LoopCloser:
     """Chooses a loop to close, and drives until it is closed."""
 
@@ -55,19 +45,18 @@ class LoopCloser:
         self._left_s = 0.0  # of driving along old ground
         self._times = np.zeros(0)  # s, to each experience by the links, ...
         self._ask_s = 0.0  # ... for so long still
-        self._tried: list[TriedLoop] = []
+        self._begun = Tried(FAR_M, LOOP_AGAIN_S)  # where it set out, ...
+        self._sought = Tried(FAR_M, LOOP_AGAIN_S)  # ... and what it headed for
 
     def choose(
         self, experiences: ExperienceMap, ranges_m: NDArray[np.float32], times: _Array, now_s: float, p: PilotParams
     ) -> int | None:
         """The experience to head for, where there is a loop to close. times: (n,) s, to each experience by the links."""
         poses, robot = experiences.poses, experiences.robot
-        left_alone = self._left_alone(poses, now_s)
-        begun = placed([tried.begin for tried in left_alone], poses)
-        if np.any(np.hypot(begun[:, 0] - robot.x, begun[:, 1] - robot.y) < FAR_M):
+        if self._begun.near(experiences, np.array([(robot.x, robot.y)]), now_s).any():
             return None
         near = _near_but_far(poses, robot, times, p)
-        near = near[_tries(left_alone, near, poses) == 0]
+        near = near[~self._sought.near(experiences, poses[near, :2], now_s)]
         dx, dy = poses[near, 0] - robot.x, poses[near, 1] - robot.y
         bearing = wrap_angles(np.arctan2(dy, dx) - robot.heading_rad)
         beams = np.argmin(np.abs(self._angles - bearing[:, None]), axis=1)
@@ -77,15 +66,10 @@ class LoopCloser:
             return None
         goal = int(ahead[soonest(robot, poses, ahead, p)])
         here = experiences.pose(experiences.active).inverse().compose(robot)
-        again_s = LOOP_AGAIN_S * 2.0 ** int(_tries(self._tried, np.array([goal]), poses)[0])
-        self._tried.append(TriedLoop((experiences.active, here.x, here.y), goal, now_s + again_s))
+        self._begun.add(experiences, experiences.active, here.x, here.y, now_s)
+        self._sought.add(experiences, goal, 0.0, 0.0, now_s)
         self._goal, self._left_s, self._ask_s = goal, LOOP_S, 0.0
         return goal
-
-    def _left_alone(self, poses: _Array, now_s: float) -> list[TriedLoop]:
-        if any(max(tried.goal, tried.begin[0]) >= len(poses) for tried in self._tried):  # another map
-            self._tried = []
-        return [tried for tried in self._tried if tried.until_s > now_s]
 
     def aim(self, experiences: ExperienceMap, dt: float, p: PilotParams) -> _Point | None:
         """The next point to head for, m, robot's frame; None when the loop is closed, or was not for too long."""
@@ -107,14 +91,6 @@ class LoopCloser:
         if self._ask_s <= 0.0 or len(self._times) > len(experiences):
             self._times, self._ask_s = experiences.temporal_map.times_to(experiences.active), ASK_S
         return self._times
-
-
-def _tries(tried: list[TriedLoop], experiences: NDArray[np.int64], poses: _Array) -> NDArray[np.int64]:
-    """How many of these headed for what lies near each of the experiences, (k,)."""
-    tries = np.zeros(len(experiences), np.int64)
-    for loop in tried:
-        tries += np.hypot(*(poses[experiences, :2] - poses[loop.goal, :2]).T) < FAR_M
-    return tries
 
 
 def _near_but_far(poses: _Array, robot: Pose2, times: _Array, p: PilotParams) -> NDArray[np.int64]:

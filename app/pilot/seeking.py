@@ -132,9 +132,10 @@ class Seeker:
         goal = experiences.pose(self.follower.goal)
         self.ground.been_at(goal.x, goal.y, experiences.poses)
         if isinstance(self._last_leg, Opening):
-            self.ground.tried(self.follower.goal, self._last_leg.place.x, self._last_leg.place.y, experiences.poses)
+            ground, place = self.ground, self._last_leg.place
+            ground.tried.add(experiences, self.follower.goal, place.x, place.y, ground.now_s)
             if not self._on_last_leg:
-                self.ground.missed(self.follower.goal, self._trip_s)
+                ground.missed.add(experiences, self.follower.goal, 0.0, 0.0, ground.now_s)
         barred = self.follower.state == "exploring"
         self.stop()
         self._wait_s = AFTER_BARRED_S if barred else 0.0
@@ -187,7 +188,7 @@ class Seeker:
         begin = np.where(near[:, None], (robot.x, robot.y), poses[rows, :2])
         leg_s = np.hypot(*(places - begin).T) / p.cruise_speed
         bearing = wrap_angles(np.arctan2(places[:, 1] - robot.y, places[:, 0] - robot.x) - robot.heading_rad)
-        cost = leg_s + np.where(near, np.abs(bearing) / p.turn_rate, times[rows]) + self.ground.lost_s(rows, poses)
+        cost = leg_s + np.where(near, np.abs(bearing) / p.turn_rate, times[rows])
         if _searching(experiences):
             x, y = poses[np.argmax(experiences.submap_of == experiences.submap_of[experiences.active]), :2]
             cost = cost + SEARCH_HOME * np.hypot(places[:, 0] - x, places[:, 1] - y) / p.cruise_speed

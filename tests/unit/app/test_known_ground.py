@@ -11,7 +11,6 @@ from app.pilot.known_ground import (
     LOOKS,
     MISSED_M,
     OLD_AFTER_S,
-    OPENING_AGAIN_S,
     OPENING_MOST_M,
     PLACE_REACH_M,
     THIN_M,
@@ -56,7 +55,7 @@ def test_open_floor_that_was_never_driven_on_is_an_opening() -> None:
     assert len(rows) == len(places) > 10
     assert places[:, 1] == pytest.approx(OPENING_MOST_M)
     assert places[:, 0] == pytest.approx(0.1 * rows)
-    ground.tried(10, 0.5, OPENING_MOST_M, map_.poses)  # that is at x = 1.5 m
+    ground.tried.add(map_, 10, 0.5, OPENING_MOST_M, ground.now_s)  # type: ignore[arg-type]  # that is at x = 1.5 m
     for x, y in ((0.0, 0.0), (7.0, 5.0)):
         map_.poses[:, :2] += (x, y)
         _, left = openings(ground, map_)
@@ -88,28 +87,12 @@ def test_how_much_new_ground_lies_about_an_opening_is_known() -> None:
     assert area[rows == 30].min() > 2 * area[rows >= 75].max()
 
 
-def test_an_opening_is_tried_again_later() -> None:
-    """Somebody stood in the way, perhaps. After each trial it is left alone for twice as long."""
-    ground, map_ = driven(along(30))
-    before = len(openings(ground, map_)[0])
-    for wait_s in (OPENING_AGAIN_S, 2 * OPENING_AGAIN_S, 4 * OPENING_AGAIN_S):
-        ground.tried(10, 0.5, OPENING_MOST_M, map_.poses)
-        ground.now_s += wait_s - 1.0
-        assert len(openings(ground, map_)[0]) < before
-        ground.now_s += 2.0
-        assert len(openings(ground, map_)[0]) == before
-
-
 def test_a_way_that_led_nowhere_counts_for_what_lies_near() -> None:
+    """What was seen from about where a trip did not get to is left alone, too."""
     ground, map_ = driven(along(100))
-    ground.missed(20, 100.0)
-    ground.missed(30, 20.0)
-    near = np.abs(np.arange(100)[:, None] - (20, 30)) * 0.1 < MISSED_M - 1e-9
-    for shift in (0.0, 5.0):
-        map_.poses[:, :2] += shift
-        assert ground.lost_s(np.arange(100), map_.poses) == pytest.approx(near @ (100.0, 20.0))
-    ground, map_ = driven(along(100))
-    assert not ground.lost_s(np.arange(100), map_.poses).any()
+    ground.missed.add(map_, 20, 0.0, 0.0, ground.now_s)  # type: ignore[arg-type]
+    rows, _ = openings(ground, map_)
+    assert set(rows.tolist()) == {k for k in range(100) if 0.1 * abs(k - 20) >= MISSED_M - 1e-9}
 
 
 def test_what_lies_on_another_submap_hides_no_opening() -> None:

@@ -112,16 +112,6 @@ def test_it_is_not_tried_again_at_once() -> None:
         assert closer._goal == goal
 
 
-def test_on_another_map_nothing_was_tried() -> None:
-    """It has the experience that was headed for, but not the one from which the robot set out."""
-    map_, closer = closing()
-    assert closer._goal < len(map_) - 1 == closer._tried[0].begin[0]
-    shorter = Unrecognised([(x, y) for x, y in map_.poses[:-1, :2]], map_.links[:-1])
-    shorter.robot = map_.robot
-    assert not chooses(shorter, closer, np.full(8, 1.0, np.float32))
-    assert not closer._tried
-
-
 def test_from_elsewhere_it_does_not_head_for_the_same() -> None:
     map_, closer = closing()
     first = map_.poses[closer._goal, :2]
