@@ -102,7 +102,9 @@ class KnownGround:
         submaps = experiences.submap_of[: self.count]
         own = submaps == submaps[experiences.active]
         rows, begin, heading, free_m = self._beams(experiences, own)
-        known = np.concatenate([experiences.poses[: self.count][own, :2], self.tried.left_alone(experiences, self.now_s)])
+        known = np.concatenate(
+            [experiences.poses[: self.count][own, :2], self.tried.left_alone(experiences, self.now_s)]
+        )
         seen = _seen(begin, np.column_stack([np.cos(heading), np.sin(heading)]), free_m)
         cells, size = _cells(np.concatenate([seen.reshape(-1, 2), known]))
         about = _new_cells(cells[: -len(known)].reshape(seen.shape), cells[-len(known) :], size)

@@ -112,7 +112,6 @@ LEAST_SCALE, MOST_SCALE = 0.02, 50.0
 UNRELATED, UNRELATED_SCANS = 0.0025, 0.002  # share of unrelated views that may be taken for one another
 OBSERVATION_SIGMA_M = 0.35  # of an observation that is only just believed, in the office
 LASER_SHIFT = 5  # columns of 3 degrees: a laser sees so well that a turn need not spoil a view
-LASER_GATE_RAD = 0.8  # scans laid on scans keep the heading: what turns it farther at once is perceptual aliasing
 WIDTH_ERROR = 1.1  # the camera's width is measured to a tenth
 
 
@@ -182,7 +181,6 @@ def _views(recording: Recording, seen: Survey, scale: float) -> dict[str, Value]
         angles = recording.about.beam_angles_rad  # half a beam to either side is seen, too
         span = (max(angles) - min(angles)) * len(angles) / (len(angles) - 1)
         values["local_view.field_of_view"] = min(span, 2 * np.pi)
-        values["evidence.gate_rad"] = LASER_GATE_RAD
     # Pictures of real cameras jump when one is dropped, so a jump is no kidnap: only a gap in the recording is.
     values |= {"local_view.surprise": 100.0, "kidnap.range_surprise": 0.0}
     if len(seen.unlike) == 0:

@@ -22,7 +22,7 @@ from ratslam_core.extensions.evidence import PRIOR, SAME, Belief, Evidence
 from ratslam_core.extensions.exact_solver import ExactSolver
 from ratslam_core.extensions.familiar_ground import FamiliarGround, NewGround
 from ratslam_core.extensions.odometry_edges import NoOdometryEdges, OdometryEdges, inflate_covariance, open_way_m
-from ratslam_core.extensions.pose_filter import SNAP, PoseFilter
+from ratslam_core.extensions.pose_filter import SNAP, SNAP_RAD, PoseFilter
 from ratslam_core.extensions.submaps import Submaps
 from ratslam_core.params import EvidenceParams, ExperienceMapParams
 from ratslam_core.parts import GeometricVerification, LocalViewPart, Optimiser
@@ -341,11 +341,9 @@ class ExperienceMap(PoseGraph):
 
         test_evidence.py::test_an_observation_that_turns_the_robot_is_outside_the_validation_gate.
         """
-        most = self.evidence.params.gate_rad
-        if most >= math.pi or self.carried:
-            return False
         claimed = self.pose(experience).compose(self._observation(experience, packet, seen))
-        return abs(wrap_angle(claimed.heading_rad - self.robot_here.heading_rad)) > most
+        turn = wrap_angle(claimed.heading_rad - self.robot_here.heading_rad)
+        return not self.carried and abs(turn) > SNAP_RAD
 
     def _may_be_seen_from(self, view: int, gate_m: float) -> bool:
         """Whether an experience of this view lies within the gate, wherever the packet is; or there is none at all."""

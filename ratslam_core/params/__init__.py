@@ -199,7 +199,7 @@ class KidnapParams:
         check_ranges(self)
 
 
-@kind("parameters of evidence/3")
+@kind("parameters of evidence/4")
 @dataclass(frozen=True, slots=True)
 class EvidenceParams:
     """How much evidence a place needs before the robot believes it, and before its maps are merged."""
@@ -207,9 +207,6 @@ class EvidenceParams:
     believe: float = param(0.7, "log odds above which the robot believes a hypothesis", -10.0, 100.0, "nats")
     merge: float = param(6.9, "log odds above which submaps are merged", 0.0, 100.0, "nats")
     unnoticed: float = param(11.0, "log odds against having been carried unnoticed", 0.0, 100.0, "nats")
-    gate_rad: float = param(
-        3.2, "validation gate: an observation that would turn the robot farther puts it in doubt; 3.2 = none does",
-        0.05, 3.2, "rad")
 
     def __post_init__(self) -> None:
         check_ranges(self)
