@@ -1,8 +1,8 @@
 """[ours] What was tried in vain is left alone for a while, and after each further trial there for twice as long.
 
-An opening into which the robot could not drive, what lies about a place that a trip did not get to, a loop that nothing closed: somebody
-may have stood there, or the map be wrong. So it is tried again, but not for ever again: between two passes of a street that
-the map shows apart a robot would else set out for the same dozen openings for hours.
+An opening into which the robot could not drive, what was seen from about a place that a trip did not get to, a loop that
+nothing closed: somebody may have stood there, or the map be wrong. So each is tried again, but ever more rarely: between two
+passes of a street that lie apart on the map a robot would else set out for the same dozen openings for hours.
 test_tried.py.
 """
 
@@ -38,16 +38,18 @@ class Tried:
     def left_alone(self, experiences: ExperienceMap, now_s: float) -> _Array:
         """The places (k, 2) on the robot's submap that are not tried now, m, map frame."""
         self._forget_another_map(experiences)
-        submaps, until = experiences.submap_of, zip(self._places, self._until_s, strict=True)
+        submaps = experiences.submap_of
         own = submaps[experiences.active]
-        return placed([p for p, until_s in until if until_s > now_s and submaps[p[0]] == own], experiences.poses)
+        both = zip(self._places, self._until_s, strict=True)
+        return placed([p for p, until_s in both if until_s > now_s and submaps[p[0]] == own], experiences.poses)
 
     def near(self, experiences: ExperienceMap, places: _Array, now_s: float) -> NDArray[np.bool_]:
         """Which of the places (n, 2), m, map frame, are left alone with what was tried beside them."""
         return self._about(places, self.left_alone(experiences, now_s)).any(axis=1)
 
     def _about(self, places: _Array, tried: _Array) -> NDArray[np.bool_]:
-        return np.hypot(*(places[:, None] - tried).transpose(2, 0, 1)) < self._about_m
+        dx, dy = (places[:, None] - tried).transpose(2, 0, 1)
+        return np.hypot(dx, dy) < self._about_m
 
     def _forget_another_map(self, experiences: ExperienceMap) -> None:
         if any(experience >= len(experiences) for experience, _, _ in self._places):
