@@ -49,7 +49,8 @@ class Tried:
 
     def _about(self, places: _Array, tried: _Array) -> NDArray[np.bool_]:
         dx, dy = (places[:, None] - tried).transpose(2, 0, 1)
-        return np.hypot(dx, dy) < self._about_m
+        away: _Array = np.hypot(dx, dy)
+        return away < self._about_m
 
     def _forget_another_map(self, experiences: ExperienceMap) -> None:
         if any(experience >= len(experiences) for experience, _, _ in self._places):
