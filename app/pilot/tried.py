@@ -45,12 +45,11 @@ class Tried:
 
     def near(self, experiences: ExperienceMap, places: _Array, now_s: float) -> NDArray[np.bool_]:
         """Which of the places (n, 2), m, map frame, are left alone with what was tried beside them."""
-        return self._about(places, self.left_alone(experiences, now_s)).any(axis=1)
+        return np.asarray(self._about(places, self.left_alone(experiences, now_s)).any(axis=1))
 
     def _about(self, places: _Array, tried: _Array) -> NDArray[np.bool_]:
         dx, dy = (places[:, None] - tried).transpose(2, 0, 1)
-        away: _Array = np.hypot(dx, dy)
-        return away < self._about_m
+        return np.hypot(dx, dy) < self._about_m
 
     def _forget_another_map(self, experiences: ExperienceMap) -> None:
         if any(experience >= len(experiences) for experience, _, _ in self._places):
