@@ -318,7 +318,7 @@ class ExperienceMap(PoseGraph):
             return merged
         if self._merge_disproved:
             self._take_back_merge()
-        elif self.evidence.idle:
+        elif self.evidence.over(self):
             self._end_of_doubt(self.evidence.here - self.log_prior_of_new)
         gate = self._gate_m
         best = self._most_energetic(packet, seen.view, gate)

@@ -48,7 +48,7 @@ LIKE = 0.8  # a less like view suggests nothing
 PRIOR = -2.0  # log odds of a place that a view suggests, against a new place
 FORGOTTEN = PRIOR - 4.0  # log odds below which a hypothesis is given up
 DOUBTED = 15.0  # and, while in doubt, how far they may lie below the likeliest's
-QUIET = 5.0  # units of way after which a doubt is over for which nothing has spoken
+QUIET = 5.0  # units of way after which a doubt is over for which nothing has spoken, unless another place is likelier
 ONE_PLACE, ONE_PLACE_RAD = 4.0, 0.6  # cells; the same place, which a map has twice until its loops are closed
 BELIEVE_IN_DOUBT = 3.0  # nats: who was hardly carried must not wander off in thought for perceptual aliasing
 SAME, SAME_RAD = 2.4, 0.3  # cells; hypotheses this near are one
@@ -272,10 +272,13 @@ class Evidence:
         turn = np.abs(wrap_angles(rows[:, HEADING] - pose.heading_rad))
         return (np.hypot(rows[:, X] - pose.x, rows[:, Y] - pose.y) < ONE_PLACE * self.cell_m) & (turn < ONE_PLACE_RAD)
 
-    @property
-    def idle(self) -> bool:
-        """Whether nothing has spoken for another place for so long that the doubt is over."""
-        return self.in_doubt and self._quiet > QUIET
+    def over(self, map_: Map) -> bool:
+        """Whether the doubt is over: nothing has spoken for another place for long, and none is likelier than *here*."""
+        if not self.in_doubt or self._quiet <= QUIET:
+            return False
+        rows = self.hypotheses
+        here = self._same_place(rows, map_.robot_here)
+        return max(self.here, rows[here, ODDS].max(initial=-math.inf)) >= rows[~here, ODDS].max(initial=-math.inf)
 
 
 def _row(pose: Pose2, odds: float, submap: int) -> Floats:

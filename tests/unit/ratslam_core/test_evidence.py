@@ -493,12 +493,26 @@ def test_a_doubt_ends_when_nothing_speaks_for_it() -> None:
     evidence = in_doubt(known, 0.0)
     for _ in range(round(law.QUIET / 0.03) - 1):
         evidence.move(DRIVE)
-        assert not evidence.idle
+        assert not evidence.over(known)
     for _ in range(3):
         evidence.move(DRIVE)
-    assert evidence.idle
+    assert evidence.over(known)
     evidence.doubt(known.count)
-    assert not evidence.idle
+    assert not evidence.over(known)
+
+
+@pytest.mark.parametrize(("off_m", "likelier"), [(9.0, True), (0.3, False)])
+def test_a_doubt_goes_on_while_another_place_is_likelier(off_m: float, likelier: bool) -> None:
+    """What was said for minutes must not be forgotten. A hypothesis beside *here* is no other place."""
+    known = Known()
+    evidence = in_doubt(known, 0.0)
+    for _ in range(round(law.QUIET / 0.03) + 2):
+        evidence.move(DRIVE)
+    here = known.robot_here
+    evidence._count = law._begin(evidence._rows, 0, np.array([here.x, here.y + off_m, here.heading_rad]), 1.0, 0, 14.0)
+    assert evidence.over(known) is not likelier
+    evidence.here = 1.5
+    assert evidence.over(known)
 
 
 def test_perceptual_aliasing_closes_no_loop() -> None:
