@@ -11,7 +11,8 @@ A robot that noticed that it was carried may be anywhere. One whose observation 
 alarm may be false, is in doubt: *here*, where odometry has led it, is a rival, too, if what is seen there speaks against
 it; what lies farther off than odometry can have drifted begins with odds against it, at most those of having been carried
 unnoticed; and since an exact copy of a place may exist, observations say no more than MOST_SAID. So in a twin odometry
-decides, where observations cannot.
+decides, where observations cannot. The doubt is over when nothing has spoken for another place for a while, and none
+is likelier than *here*.
 
 A corridor that was driven twice lies on the map twice, a little apart, until something closes that loop. So what is near a
 hypothesis is the same place, no rival, and what is seen *here* as well says nothing against there.
