@@ -59,7 +59,7 @@ def play(recording: Recording, seed: int = 0, scans: ScanRules | None = None) ->
     for step in Player(recording, seed, scans=scans).steps():
         brain, at = step.brain, step.brain.experience_map.local_pose
         if step.estimate.created:
-            born[step.estimate.experience] = step.moment.time_s
+            born[brain.experience_map.here] = step.moment.time_s
         frames.append(step.moment.frame)
         times.append(step.moment.time_s)
         active.append(step.estimate.experience)

@@ -142,7 +142,7 @@ class Estimate:
     """What the engine believes after one step."""
 
     experience: int  # the active experience
-    created: bool  # it is new
+    created: bool  # one was made: `ExperienceMap.here`, though it may believe itself at another
     pose_map_robot: Pose2  # in the frame of the experience map
     packet: Packet  # the winning packet
     recognition: Recognition

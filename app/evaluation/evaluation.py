@@ -49,7 +49,7 @@ class Evaluation:
     def record(
         self, time_s: float, truth: Truth, experiences: ExperienceMap, created: bool, odometry: Odometry
     ) -> None:
-        """Record one tick. created: whether the active experience was made in it."""
+        """Record one tick. created: whether an experience was made in it."""
         if self._count == len(self._rows):
             self._rows, self._experience = grown(self._rows), grown(self._experience)
         step, turn = odometry.speed * odometry.dt, odometry.yaw_rate * odometry.dt
