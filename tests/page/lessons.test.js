@@ -108,6 +108,39 @@ test("from a lesson the run before is a click away", () =>
     await until("the office is seen again", () => page.document.body.dataset.plate === "office");
   }));
 
+test("a lesson whose text comes when it is being left does not keep its view", () =>
+  fresh(async (page) => {
+    const { window } = page;
+    const { fetch } = window;
+    let come = () => {};
+    const late = new Promise((go) => (come = () => go(null)));
+    window.fetch = async (/** @type {string} */ asked, /** @type {any} */ how) => {
+      if (asked === "/api/lessons/packet") await late;
+      return fetch(asked, how);
+    };
+    await command("step", { ticks: 5 });
+    page.press("2"); // the office, by its key
+    await command("begin_lesson", { name: "packet" });
+    await until("the run waits", () => !page.find(".go-back").hidden);
+    const socket = window.sockets.at(-1);
+    const hears = socket.onmessage;
+    /** @type {any[]} */
+    const states = [];
+    socket.onmessage = (/** @type {any} */ event) => {
+      const isState = typeof event.data === "string" && JSON.parse(event.data).type === "state";
+      isState ? states.push(event) : hears(event);
+    };
+    page.find(".go-back").click(); // in a card that is not drawn yet; others have the button elsewhere
+    await page.says("#toasts", "goes on from where it was");
+    come();
+    await page.says("#lesson-title", /./);
+    await until("a state tells of it", () => states.length > 0);
+    socket.onmessage = hears;
+    for (const event of states) hears(event);
+    await until("the run does not wait", () => page.find(".go-back").hidden);
+    assert.equal(page.document.body.dataset.plate, "office");
+  }));
+
 test("each of the six demos is three clicks from a fresh page", long, () =>
   fresh(
     async (page) => {

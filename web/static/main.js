@@ -71,10 +71,12 @@ const watched = new Watched({
 });
 let ownView = viewer.view; // as the run was left: a lesson turns to its own
 let away = false; // whether a run waits
+let returning = false; // to it: until a state tells so a lesson may still turn to its own view
 const goBack = /** @type {HTMLButtonElement[]} */ ([...document.querySelectorAll(".go-back")]);
 for (const button of goBack)
   button.addEventListener("click", async () => {
-    if (await command({ type: "go_back" }, "Your run goes on from where it was.")) viewer.show(ownView);
+    returning = true;
+    if (!(await command({ type: "go_back" }, "Your run goes on from where it was."))) returning = false;
   });
 if (!watching) takeBrainFiles();
 const keeping = new Keeping(link, { viewer, panel, files, timeline, mayLeave });
@@ -105,6 +107,10 @@ link.on("state", (/** @type {{ state: State, page: PageFields }} */ detail) => {
   panel.inspected(detail.page.inspected);
   timeline.at(state, detail.page.time);
   lesson.at(state);
+  if (returning && !away) {
+    returning = false;
+    viewer.show(ownView);
+  }
   runUntil.at(state, detail.page.places);
   beside.show(state.beside, detail.page.pairs, detail.page.additions_off);
   first.at(state, detail.page);

@@ -113,8 +113,8 @@ export class Lesson {
   async read(name) {
     this.text = null;
     const [answer, cards] = await Promise.all([fetch(`/api/lessons/${name}`), this.list.look()]).catch(() => []);
-    if (!answer?.ok || this.now?.name !== name) return;
-    const text = /** @type {LessonText} */ (await answer.json());
+    const text = /** @type {LessonText | null} */ (answer?.ok ? await answer.json() : null);
+    if (!text || this.now?.name !== name) return;
     this.text = text;
     this.after = nextAfter(cards ?? [], name);
     this.question = new Question(text.predict, (said) => this.ask({ type: "predict", ...said }), this.link.watches);
