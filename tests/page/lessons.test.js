@@ -131,6 +131,7 @@ test("a lesson whose text comes when it is being left does not keep its view", (
       isState ? states.push(event) : hears(event);
     };
     page.find(".go-back").click(); // in a card that is not drawn yet; others have the button elsewhere
+    page.find(".go-back").click(); // a second answer would be that there is nothing to go back to
     await page.says("#toasts", "goes on from where it was");
     come();
     await page.says("#lesson-title", /./);

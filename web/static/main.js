@@ -75,6 +75,7 @@ let returning = false; // to it: until a state tells so a lesson may still turn 
 const goBack = /** @type {HTMLButtonElement[]} */ ([...document.querySelectorAll(".go-back")]);
 for (const button of goBack)
   button.addEventListener("click", async () => {
+    if (returning) return;
     returning = true;
     if (!(await command({ type: "go_back" }, "Your run goes on from where it was."))) returning = false;
   });
