@@ -43,6 +43,7 @@ class Choice(NamedTuple):
     speed: float
     turn_rate: float
     clearance: float
+    facing: NDArray[np.float64]  # of `_facing_of` this turn rate
 
 
 @kind("local movement/3")
@@ -115,7 +116,7 @@ class LocalMovement:
         """The same object for the same parameters, since it is needed in every tick."""
         if self._choice is None or self._choice[:2] != (p, self.squeezes):
             clearance = p.clearance * (SQUEEZE if self.squeezes else 1.0)
-            self._choice = p, self.squeezes, Choice(p.cruise_speed, p.turn_rate, clearance)
+            self._choice = p, self.squeezes, Choice(p.cruise_speed, p.turn_rate, clearance, _facing_of(p.turn_rate))
         return self._choice[2]
 
 
@@ -178,20 +179,20 @@ def _best_arc(echoes: _Array, x: float, y: float, p: Choice) -> tuple[float, flo
     """Speed and yaw rate of the cheapest arc that keeps clear of all echoes; a turn on the spot is always clear."""
     best, best_v, best_w = np.inf, 0.0, 0.0
     near = _within(echoes, p.speed * ARC_S + p.clearance + 2 * NARROW_M)  # generously
-    facing = _facing_of(p)
     for share in SHARES:
         v = p.speed * share
         for wi in range(-ARCS, ARCS + 1):
             if v == 0.0 and abs(wi) < SPOT_SHARE * ARCS:
                 continue
-            w = p.turn_rate * wi / ARCS
-            px, py, nearest, free = 0.0, 0.0, np.inf, True
-            if v > 0.0:
-                px, py, nearest, free = _along(near, v * (ARC_S / ARC_STEPS), facing[wi + ARCS], p)
-            if free:
-                cost = _cost_of(x, y, px, py, w * (ARC_S if v > 0.0 else SPOT_S), nearest, p)
-                if cost < best:
-                    best, best_v, best_w = cost, v, w
+            w, step = p.turn_rate * wi / ARCS, v * (ARC_S / ARC_STEPS)
+            px, py = _end_of(step, p.facing[wi + ARCS])
+            turned = w * (ARC_S if v > 0.0 else SPOT_S)
+            if _cost_of(x, y, px, py, turned, np.inf, p) >= best:
+                continue  # nor is it the best with an echo near it
+            nearest, free = _along(near, step, p.facing[wi + ARCS], p) if v > 0.0 else (np.inf, True)
+            cost = _cost_of(x, y, px, py, turned, nearest, p)
+            if free and cost < best:
+                best, best_v, best_w = cost, v, w
     return best_v, best_w
 
 
@@ -217,7 +218,7 @@ def candidates(echoes: _Array, x: float, y: float, p: Choice) -> Candidates:
 
     echoes: (n, 2) m, robot's frame. test_candidates.py::test_the_cheapest_candidate_is_the_one_that_was_chosen.
     """
-    near, facing = _within(echoes, p.speed * ARC_S + p.clearance + 2 * NARROW_M), _facing_of(p)
+    near = _within(echoes, p.speed * ARC_S + p.clearance + 2 * NARROW_M)
     rows: list[tuple[float, float, float, float]] = []
     paths: list[NDArray[np.float64]] = []
     for share in SHARES:
@@ -226,19 +227,28 @@ def candidates(echoes: _Array, x: float, y: float, p: Choice) -> Candidates:
             if v == 0.0 and abs(wi) < SPOT_SHARE * ARCS:
                 continue
             w, step = p.turn_rate * wi / ARCS, v * (ARC_S / ARC_STEPS)
-            px, py, nearest, free = 0.0, 0.0, np.inf, True
-            if v > 0.0:
-                px, py, nearest, free = _along(near, step, facing[wi + ARCS], p)
+            px, py = _end_of(step, p.facing[wi + ARCS])
+            nearest, free = _along(near, step, p.facing[wi + ARCS], p) if v > 0.0 else (np.inf, True)
             turned = w * (ARC_S if v > 0.0 else SPOT_S)
             rows.append((turned, v, w, _cost_of(x, y, px, py, turned, nearest, p) if free else np.inf))
-            paths.append(np.vstack([np.zeros((1, 2)), np.cumsum(step * facing[wi + ARCS], axis=0)]))
+            paths.append(np.vstack([np.zeros((1, 2)), np.cumsum(step * p.facing[wi + ARCS], axis=0)]))
     turned_rad, speed, yaw_rate, cost = np.array(rows).T
     return Candidates(np.array(paths), turned_rad, speed * ARC_S, speed, yaw_rate, cost)
 
 
 @njit(cache=True, nogil=True)
-def _along(near: tuple[_Array, _Array], step: float, facing: _Array, p: Choice) -> tuple[float, float, float, bool]:
-    """The end (m) of an arc, the squared distance (m²) of the nearest echo, and whether it keeps clear of all.
+def _end_of(step: float, facing: _Array) -> tuple[float, float]:
+    """Where an arc ends (m), robot's frame."""
+    px = py = 0.0
+    for k in range(ARC_STEPS):
+        px += step * facing[k, 0]
+        py += step * facing[k, 1]
+    return px, py
+
+
+@njit(cache=True, nogil=True)
+def _along(near: tuple[_Array, _Array], step: float, facing: _Array, p: Choice) -> tuple[float, bool]:
+    """The squared distance (m²) of the echo nearest to an arc, and whether it keeps clear of all.
 
     near: from `_within`. All echoes are compared at once, without a branch, so that the compiler can vectorise.
     """
@@ -256,11 +266,11 @@ def _along(near: tuple[_Array, _Array], step: float, facing: _Array, p: Choice) 
             too_close += (d < p.clearance * p.clearance) & (d < limit[e])
             least[e] = d if d < least[e] else least[e]
         if too_close > 0:
-            return px, py, np.inf, False
+            return np.inf, False
     nearest = np.inf
     for d in least:
         nearest = min(nearest, d)
-    return px, py, nearest, True
+    return nearest, True
 
 
 @njit(cache=True, nogil=True)
@@ -273,13 +283,12 @@ def _cost_of(x: float, y: float, px: float, py: float, heading: float, nearest: 
     return left + TURN_COST * aim + NARROW_COST * close
 
 
-@njit(cache=True, nogil=True)
-def _facing_of(p: Choice) -> _Array:
-    """Cosine and sine of the heading in the middle of each step of each arc."""
+def _facing_of(turn_rate: float) -> NDArray[np.float64]:
+    """Cosine and sine of the heading in the middle of each step of each arc, (arcs, steps, 2)."""
     out = np.empty((2 * ARCS + 1, ARC_STEPS, 2))
     for wi in range(-ARCS, ARCS + 1):
         for k in range(ARC_STEPS):
-            heading = p.turn_rate * wi / ARCS * (k + 0.5) * ARC_S / ARC_STEPS
+            heading = turn_rate * wi / ARCS * (k + 0.5) * ARC_S / ARC_STEPS
             out[wi + ARCS, k, 0], out[wi + ARCS, k, 1] = math.cos(heading), math.sin(heading)
     return out
 
