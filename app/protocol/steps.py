@@ -119,6 +119,9 @@ class Drive(StepBase):
     path: Annotated[list[Where], Field(min_length=1)]
     laps: Annotated[int, Field(ge=1, le=10_000)] = 1
     speed: Annotated[float, Field(gt=0, le=2)] = 0.3  # m/s
+    look_back_m: Annotated[float, Field(ge=0.1, le=1000)] | None = (
+        None  # of path, after which it looks back: IROS 2005 IV.D
+    )
 
     def needs_places(self) -> Sequence[Where]:
         return self.path
@@ -132,9 +135,11 @@ class Drive(StepBase):
         return self.model_copy(update={"laps": max(1, round(laps)), "path": path})
 
     def carry_out(self, course: Course) -> Iterator[str]:
+        path = [course.place(where) for where in self.path]
+        stops = path if self.look_back_m is None else list(looking_back(path, self.look_back_m))
         for lap in range(self.laps):
-            for where in self.path:
-                yield from self._drive_to(course, course.place(where), f"driven, lap {lap + 1} of {self.laps}")
+            for place in stops:
+                yield from self._drive_to(course, place, f"driven, lap {lap + 1} of {self.laps}")
         course.session.drive(*STANDING)
 
     def _drive_to(self, course: Course, place: tuple[float, float], what: str) -> Iterator[str]:
@@ -148,6 +153,25 @@ class Drive(StepBase):
             turn = max(-MOST_TURN, min(MOST_TURN, aside / max(AIM_S, session.frame.dt)))
             session.drive(self.speed * math.cos(aside) if abs(aside) < SHARP_RAD else 0.0, turn)
             yield from course.tick(what)
+
+
+def looking_back(path: Sequence[tuple[float, float]], every_m: float) -> Iterator[tuple[float, float]]:
+    """The stops on a path that is driven in stretches of this length: each there, back and there again. IROS 2005 IV.D.
+
+    test_course.py::test_who_looks_back_drives_each_stretch_three_times."""
+    stretches, left_m = [[path[0]]], every_m
+    for end in path[1:]:
+        while (away := math.dist(at := stretches[-1][-1], end)) > left_m:
+            share = left_m / away
+            cut = at[0] + share * (end[0] - at[0]), at[1] + share * (end[1] - at[1])
+            stretches[-1].append(cut)
+            stretches.append([cut])
+            left_m = every_m
+        stretches[-1].append(end)
+        left_m -= away
+    yield path[0]
+    for first, *rest in stretches:
+        yield from (*rest, *rest[-2::-1], first, *rest)
 
 
 class Move(StepBase):

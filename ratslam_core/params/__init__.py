@@ -86,7 +86,7 @@ class LocalViewParams:
         check_ranges(self)
 
 
-@kind("parameters of experience map/8")
+@kind("parameters of experience map/9")
 @dataclass(frozen=True, slots=True)
 class ExperienceMapParams:
     """Experiences, their links and the correction of the map (B 4, D 3)."""
@@ -95,12 +95,9 @@ class ExperienceMapParams:
         True, "build an experience map; off = the packet's place in the pose cells is the robot's place, as in 2004",
         source="A", live=False)
     zone_xy: float = param(
-        2.0, "zone of influence in x', y'", 0.5, 20.0, "cells", symbol="r_a", source="D eq. 2", lecture=True)
+        2.0, "zone of influence in x', y'", 0.5, 20.0, "cells", symbol="r_a", source="B 4.1, D eq. 2", lecture=True)
     zone_theta: float = param(2.0, "zone of influence in θ'", 0.5, 20.0, "layers", symbol="θ_a", source="D eq. 3")
     threshold: float = param(0.0, "a new experience is made when no energy is above this", 0.0, 2.0, source="B 4.1")
-    energy: str = param(
-        "2006", "2006: zero outside the zone; 2005: place and heading count separately", symbol="E",
-        source="D eqs. 1-4, B eqs. 4-9", choices=("2006", "2005"))
     match_view: bool = param(
         True, "only experiences of the current view have energy; off = only the pose cells count", symbol="E_V",
         source="B eq. 8")

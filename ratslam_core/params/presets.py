@@ -24,6 +24,7 @@ _PLAIN: dict[str, Value] = {name: value for addition in ADDITIONS for name, valu
 # nobody tells the activity of an active local view cell, which is a tenth, at the learning rate of 0.15; and a link saturates
 # so that a single observation moves no packet, as D's table demands. docs/findings.md has each with and without it.
 _READ: dict[str, Value] = {
+    "local_view.front_end": "template",
     "experience_map.sweep": "by experience",
     "experience_map.zone_xy": 1.0,
     "experience_map.zone_theta": 1.0,
@@ -39,21 +40,9 @@ _PAPERS: dict[str, dict[str, Value]] = {
         "experience_map.link_confidence": 0.0,
     },
     # B and C: experiences, map correction, goal memory.
-    "paper-2005": {
-        **_PLAIN,
-        **_READ,
-        "local_view.front_end": "template",
-        "experience_map.energy": "2005",
-        "experience_map.link_confidence": 0.0,
-    },
-    # D: experiences of one place and scene, links with behaviour and confidence.
-    "paper-2006": {
-        **_PLAIN,
-        **_READ,
-        "local_view.front_end": "template",
-        "experience_map.energy": "2006",
-        "experience_map.link_confidence": 0.2,
-    },
+    "paper-2005": {**_PLAIN, **_READ, "experience_map.link_confidence": 0.0},
+    # D: the same, and links that fail are deleted.
+    "paper-2006": {**_PLAIN, **_READ, "experience_map.link_confidence": 0.2},
 }
 
 

@@ -12,9 +12,8 @@ from disk import kind
 from ratslam_core.params import ExperienceMapParams
 from ratslam_core.types import Floats, Ints, Ints32, Packet, Pose2, grown
 
-# x', y', theta' of a state of the pose cells; layers, cells along y' and x'; how far a zone reaches, in cells and layers;
-# and whether its energy is that of 2005
-Zone: TypeAlias = tuple[float, float, float, int, int, int, float, float, bool]
+# x', y', theta' of a state of the pose cells; layers, cells along y' and x'; how far a zone reaches, in cells and layers
+Zone: TypeAlias = tuple[float, float, float, int, int, int, float, float]
 
 
 @kind("experiences/5")
@@ -55,7 +54,7 @@ class Experiences:
         return packet.x % n_x, packet.y % n_y, (packet.heading_rad * n_theta / (2 * math.pi)) % n_theta
 
     def _zone(self, packet: Packet, p: ExperienceMapParams) -> Zone:
-        return *self._state(packet), *self.shape, p.zone_xy, p.zone_theta, p.energy == "2005"
+        return *self._state(packet), *self.shape, p.zone_xy, p.zone_theta
 
     def cells_from(self, experience: int, packet: Packet) -> tuple[float, float, float]:
         """The packet relative to an experience's state: cells and layers, the shorter way round."""
@@ -69,7 +68,9 @@ class Experiences:
         )
 
     def energy(self, experience: int, packet: Packet, view: int, p: ExperienceMapParams) -> float:
-        """ACRA 2006 eqs. 1-4: E = 0 if r > 1 or q > 1 or V != V_i, else 2 - r - q; ACRA 2005 eqs. 4-9: V ((1-r)+ + (1-q)+)."""
+        """E = 0 if r > 1 or q > 1 or V != V_i, else 2 - r - q. ACRA 2006 eqs. 1-4, ACRA 2005 eqs. 4-9, whose zone is *the value
+        range within each of the 4 state variables when this experience is activated*.
+        """
         if p.match_view and view != self.view[experience]:
             return 0.0
         return float(_energy(self._zone(packet, p), self.at, experience))
@@ -103,11 +104,9 @@ def _apart(a: float, b: float, n: int) -> float:
 
 @njit(cache=True, nogil=True, inline="always")
 def _energy(zone: Zone, at: Floats, i: int) -> float:
-    x, y, theta, n_theta, n_y, n_x, reach_xy, reach_theta, old = zone
+    x, y, theta, n_theta, n_y, n_x, reach_xy, reach_theta = zone
     r = math.sqrt(_apart(x, at[i, 0], n_x) ** 2 + _apart(y, at[i, 1], n_y) ** 2) / reach_xy
     q = _apart(theta, at[i, 2], n_theta) / reach_theta
-    if old:
-        return max(1.0 - r, 0.0) + max(1.0 - q, 0.0)
     return 0.0 if r > 1.0 or q > 1.0 else 2.0 - r - q
 
 

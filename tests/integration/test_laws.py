@@ -15,7 +15,7 @@ ROBOTS = {
     "as it is": {},
     "complex cells on a small torus": {"local_view.front_end": "complex cells", "pose_cells.n_x": 16, "pose_cells.n_y": 13},
     "hue, shortcuts": {"local_view.front_end": "hue and saturation", "experience_map.shortcut_m": 0.5},
-    "scene numbers, 2005": {"local_view.front_end": "scene numbers", "experience_map.energy": "2005"},
+    "scene numbers": {"local_view.front_end": "scene numbers"},
     "links that are dropped": {"experience_map.link_trials": 1, "experience_map.link_confidence": 0.9},
     "false positives, every step solved": {"local_view.false_positives": 0.5, "experience_map.solve_every": 1,
                                            "local_view.rest": 0.0},

@@ -11,7 +11,7 @@ from pydantic import TypeAdapter
 
 from app.config import Config
 from app.protocol.course import Course, Tagged
-from app.protocol.steps import Step
+from app.protocol.steps import Step, looking_back
 from sim2d import Place, load_world
 
 from .sessions import a_session
@@ -67,6 +67,17 @@ def test_a_driven_robot_comes_to_every_point_lap_by_lap() -> None:
     assert course.session.evaluation.path_m > 2 * 2 * (2.3 + 2.2) - 2.5
     assert math.dist(true_pose(course)[:2], (3.0, 0.8)) < 0.3
     assert course.session.pilot.mode == "manual"
+
+
+def test_who_looks_back_drives_each_stretch_three_times() -> None:
+    """Every stretch is cut to its length, round corners too, and the last one to what is left."""
+    path = [(0.0, 0.0), (2.0, 0.0), (2.0, 2.5)]
+    a, b, (c, d, e) = (0.0, 0.0), (1.5, 0.0), ((2.0, 0.0), (2.0, 1.0), (2.0, 2.5))
+    assert list(looking_back(path, 1.5)) == [a, b, a, b, c, d, c, b, c, d, e, d, e]
+    assert list(looking_back(path, 9.0)) == [*path, *path[1::-1], *path[1:]]
+    course = taken(to("drive", path=["home", (5.3, 0.8)], look_back_m=1.0))
+    assert course.session.evaluation.path_m > 1.5 * (5.3 - HOME.x)  # a stop is reached a little before it
+    assert math.dist(true_pose(course)[:2], (5.3, 0.8)) < 0.3
 
 
 def test_a_point_that_cannot_be_driven_to_is_left_out() -> None:

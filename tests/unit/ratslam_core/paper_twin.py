@@ -151,8 +151,6 @@ class PaperTwin:
         q = abs(math.remainder(theta - own_theta, n_theta)) / m.zone_theta  # D3
         if view != own_view:
             return 0.0
-        if m.energy == "2005":
-            return max(1 - r, 0) + max(1 - q, 0)  # B 4-9
         return 0.0 if r > 1 or q > 1 else 2 - r - q  # D1, D4
 
     def _experience(self, view: int, way: float, turn: float, dt: float, behaviour: int) -> None:

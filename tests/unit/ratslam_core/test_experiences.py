@@ -23,7 +23,7 @@ BLIND_M = 1.0
 
 
 def literal_energy(known: Experiences, i: int, packet: Packet, view: int, p: ExperienceMapParams) -> float:
-    """D1-D4 and B4-B9, trying every way round the torus."""
+    """D1-D4, trying every way round the torus."""
     n_theta, n_y, n_x = known.shape
     x, y, theta = known.at[i]
     layer = packet.heading_rad * n_theta / (2 * math.pi)
@@ -33,8 +33,6 @@ def literal_energy(known: Experiences, i: int, packet: Packet, view: int, p: Exp
     ) / p.zone_xy  # fmt: skip
     q = min(abs(layer - theta + c) for c in (-2 * n_theta, -n_theta, 0, n_theta)) / p.zone_theta
     switch = not p.match_view or view == known.view[i]
-    if p.energy == "2005":
-        return switch * (max(1 - r, 0) + max(1 - q, 0))
     return 0.0 if r > 1 or q > 1 or not switch else 2 - r - q
 
 
@@ -43,7 +41,6 @@ headings = st.one_of(st.floats(-3.14, math.pi), st.sampled_from([math.pi, -3.1, 
 states = st.tuples(cells, cells, headings, st.integers(-1, 3))
 params = st.builds(
     ExperienceMapParams,
-    energy=st.sampled_from(["2006", "2005"]),
     match_view=st.booleans(),
     zone_xy=st.one_of(st.just(2.0), st.floats(0.5, 20.0)),
     zone_theta=st.one_of(st.just(2.0), st.floats(0.5, 20.0)),
@@ -83,12 +80,13 @@ def test_the_choice_is_that_of_a_loop_over_all(shape, p: ExperienceMapParams, ma
     assert known.most_energetic(packet, view, p, robot, BLIND_M) == best
 
 
-def test_by_the_choice_of_energy_and_scene_a_map_makes_an_experience_or_none() -> None:
-    """In 2005 the right place with a wrong heading still counts; without the scene the same cells are the same place."""
-    turned, other = (Packet(20.0, 20.0, 2.0, 1.0), 0), (Packet(20.0, 20.0, 0.0, 1.0), 5)
+def test_outside_its_zone_in_any_variable_an_experience_is_not_there() -> None:
+    """The right place with a wrong heading does not count, nor the other way round; without the scene the same cells do."""
+    turned, beside = (Packet(20.0, 20.0, 2.0, 1.0), 0), (Packet(26.0, 20.0, 0.0, 1.0), 0)
+    other = Packet(20.0, 20.0, 0.0, 1.0), 5
     for (packet, view), params, energy in (
-        (turned, ExperienceMapParams(energy="2005"), 1.0),
-        (turned, ExperienceMapParams(energy="2006"), 0.0),
+        (turned, ExperienceMapParams(), 0.0),
+        (beside, ExperienceMapParams(), 0.0),
         (other, ExperienceMapParams(match_view=False), 2.0),
         (other, ExperienceMapParams(match_view=True), 0.0),
     ):
@@ -110,10 +108,11 @@ def test_limits_are_reached_just_as_they_are() -> None:
     for beside in (replace(here, x=22.0), replace(here, y=18.0), replace(here, heading_rad=math.pi / 2)):  # nine layers
         assert known.energy(0, beside, 0, zones) == 1.0
     assert known.energy(0, replace(here, heading_rad=math.pi / 2 + 1e-6), 0, zones) == 0.0
-    for match_view, energy in product((True, False), ("2005", "2006")):
-        for threshold, found in ((1.5, -1), (1.4375, 0)):  # one and a half at one cell from the middle
-            p = replace(zones, match_view=match_view, energy=energy, threshold=threshold)
-            assert known.most_energetic(replace(here, x=21.0), 0, p, START, BLIND_M) == found
+    for match_view, (threshold, found) in product(
+        (True, False), ((1.5, -1), (1.4375, 0))
+    ):  # 1.5 at a cell from the middle
+        p = replace(zones, match_view=match_view, threshold=threshold)
+        assert known.most_energetic(replace(here, x=21.0), 0, p, START, BLIND_M) == found
     for apart_m, found in ((2.0, 3), (2.001, -1)):
         for robot in (Pose2(3.0 + apart_m, 1.0, 0.0), Pose2(3.0, 1.0 - apart_m, 0.0)):
             assert known.most_energetic(here, -1, ExperienceMapParams(), robot, 2.0) == found

@@ -54,11 +54,9 @@ def in_step(params: RatSlamParams, ticks: int, seed: int) -> tuple[RatSlam, Pape
     return brain, twin
 
 
-@pytest.mark.parametrize(("energy", "seed"), [("2006", 0), ("2005", 1)])
 @pytest.mark.slow
-def test_a_run_is_that_of_the_literal_twin(energy: str, seed: int) -> None:
-    params = with_values(preset("paper-2006"), {**SMALL, "experience_map.energy": energy})
-    brain, twin = in_step(params, 260, seed)
+def test_a_run_is_that_of_the_literal_twin() -> None:
+    brain, twin = in_step(with_values(preset("paper-2006"), SMALL), 260, 0)
     assert len(twin.views) > 20
     assert brain.experience_map.closures > 10
     assert any(t.passages > 1 for t in twin.transitions)
