@@ -189,7 +189,7 @@ def _best_arc(echoes: _Array, x: float, y: float, p: Choice) -> tuple[float, flo
             turned = w * (ARC_S if v > 0.0 else SPOT_S)
             if _cost_of(x, y, px, py, turned, np.inf, p) >= best:
                 continue  # nor is it the best with an echo near it
-            nearest, free = _along(near, step, p.facing[wi + ARCS], p) if v > 0.0 else (np.inf, True)
+            nearest, free = _along(near, step, p.facing[wi + ARCS], p)
             cost = _cost_of(x, y, px, py, turned, nearest, p)
             if free and cost < best:
                 best, best_v, best_w = cost, v, w
@@ -228,7 +228,7 @@ def candidates(echoes: _Array, x: float, y: float, p: Choice) -> Candidates:
                 continue
             w, step = p.turn_rate * wi / ARCS, v * (ARC_S / ARC_STEPS)
             px, py = _end_of(step, p.facing[wi + ARCS])
-            nearest, free = _along(near, step, p.facing[wi + ARCS], p) if v > 0.0 else (np.inf, True)
+            nearest, free = _along(near, step, p.facing[wi + ARCS], p)
             turned = w * (ARC_S if v > 0.0 else SPOT_S)
             rows.append((turned, v, w, _cost_of(x, y, px, py, turned, nearest, p) if free else np.inf))
             paths.append(np.vstack([np.zeros((1, 2)), np.cumsum(step * p.facing[wi + ARCS], axis=0)]))
@@ -248,10 +248,12 @@ def _end_of(step: float, facing: _Array) -> tuple[float, float]:
 
 @njit(cache=True, nogil=True)
 def _along(near: tuple[_Array, _Array], step: float, facing: _Array, p: Choice) -> tuple[float, bool]:
-    """The squared distance (m²) of the echo nearest to an arc, and whether it keeps clear of all.
+    """The squared distance (m²) of the echo nearest to an arc, and whether it keeps clear of all; a turn on the spot does.
 
     near: from `_within`. All echoes are compared at once, without a branch, so that the compiler can vectorise.
     """
+    if step == 0.0:
+        return np.inf, True
     px = py = 0.0
     places, limits = near
     x, y, limit, least = places[0], places[1], limits[0], limits[1]
